@@ -85,11 +85,13 @@ class Results(Mapping[str, np.ndarray]):
 
     @property
     def events(self) -> list[dict[str, Any]]:
-        """The events of a run under forces, in their order: impacts, stops that close and open, pairs that stick and slip.
+        """The events of a run under forces, in their order: impacts, stops and contacts that close and open, friction that sticks and
+        slips.
 
-        Each has `time` [s], `kind` ('impact', 'close', 'open', 'stick', 'slip'), `group` ('stop', 'friction'), `number` (of the group in the data file), and
-        `impulse` on the coordinate [N m s, N s], positive where it increases its rate; None where there is none. Impacts of
-        a run with reactions have `pairs`, too: `pair`, `force` [N s] and `moment` [N m s] of each.
+        Each has `time` [s], `kind` ('impact', 'close', 'open', 'lift', 'stick', 'slip'), `group` ('stop', 'friction',
+        'contact'), `number` (of the group in the data file), and `impulse` on the coordinate [N m s, N s], positive where it
+        increases its rate, or along the normal of a contact; None where there is none. Impacts of a run with reactions have
+        `pairs`, too: `pair`, `force` [N s] and `moment` [N m s] of each.
         """
         return list(self.report.get('events', []))
 

@@ -143,6 +143,11 @@ contains
     else if (allocated(view%friction)) then
       deallocate (view%friction)
     end if
+    if (allocated(state%contact_force)) then
+      view%contact_force = state%contact_force
+    else if (allocated(view%contact_force)) then
+      deallocate (view%contact_force)
+    end if
     do i = 1, plan%n_coordinates
       view%q(i) = state%q(i)
       view%dq(i) = state%dq(i)

@@ -22,6 +22,7 @@ module mech9_reader
   use mech9_body_reader, only: read_bodies, read_gravity
   use mech9_load_reader, only: read_loads
   use mech9_stop_reader, only: read_stops
+  use mech9_contact_reader, only: read_contacts
   use mech9_friction_reader, only: read_frictions
   use mech9_motor_reader, only: read_motors
   use mech9_rod_holding, only: hold_idle_rods
@@ -131,6 +132,7 @@ contains
       call read_loads(document, m, diagnostics)
       call read_frictions(document, request%time, m, diagnostics)
       call read_stops(document, request%time, m, diagnostics)
+      call read_contacts(document, request%time, m, diagnostics)
       call read_output(document, m%structure, request%output, diagnostics)
       call read_quantities(document, request%time, request%quantities, diagnostics)
       call read_cams(document, m%structure, m%pairs, request%cams, diagnostics)

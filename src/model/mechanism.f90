@@ -9,6 +9,7 @@ module mech9_mechanism
   use mech9_motor, only: motor_slot_type
   use mech9_stop, only: stop_type
   use mech9_friction, only: friction_type
+  use mech9_contact, only: contact_type
   use mech9_coupling, only: coupling_slot_type
   use mech9_registered_procedures, only: registered_procedures_type
   implicit none
@@ -27,10 +28,11 @@ module mech9_mechanism
     type(coupling_slot_type), allocatable :: couplings(:)   !< in the order of the data file; none where not allocated
     type(point_type), allocatable :: points(:)
     type(body_type), allocatable :: bodies(:)
-    type(load_slot_type), allocatable :: loads(:)     !< in the order of the data file; then of frictions, and of compliant stops
+    type(load_slot_type), allocatable :: loads(:)     !< in the order of the data file; then of frictions, stops, contacts
     type(motor_slot_type), allocatable :: motors(:)   !< in the order of the data file; their forces act beside those of the loads
     type(stop_type), allocatable :: stops(:)          !< in the order of the data file
     type(friction_type), allocatable :: frictions(:)  !< in the order of the data file; none where not allocated
+    type(contact_type), allocatable :: contacts(:)    !< in the order of the data file; none where not allocated
     real(wp) :: gravity(3) = 0.0_wp                 !< in the axes of link 1 [m/s^2]
     real(wp), allocatable :: parameters(:)          !< numbers for the user's procedures
     type(registered_procedures_type) :: procedures  !< the user's procedures that are not linked
@@ -39,8 +41,9 @@ module mech9_mechanism
     procedure :: has_forces
     procedure :: mark_loaded_links
     procedure :: mark_loaded_coordinates
-    procedure :: has_rigid_stops
+    procedure :: has_rigid_ends
     procedure :: has_frictions
+    procedure :: has_contacts
   end type mechanism_type
 
 contains
@@ -76,12 +79,13 @@ contains
     end do
   end subroutine mark_loaded_links
 
-  !> Whether any stop is rigid.
-  pure logical function has_rigid_stops(self)
+  !> Whether any stop, or any contact of links, is rigid.
+  pure logical function has_rigid_ends(self)
     class(mechanism_type), intent(in) :: self   !< the mechanism
 
-    has_rigid_stops = any(self%stops%is_rigid)
-  end function has_rigid_stops
+    has_rigid_ends = any(self%stops%is_rigid)
+    if (allocated(self%contacts)) has_rigid_ends = has_rigid_ends .or. any(self%contacts%is_rigid)
+  end function has_rigid_ends
 
   !> Whether any pair has friction.
   pure logical function has_frictions(self)
@@ -90,6 +94,14 @@ contains
     has_frictions = .false.
     if (allocated(self%frictions)) has_frictions = size(self%frictions) > 0
   end function has_frictions
+
+  !> Whether any links may touch each other.
+  pure logical function has_contacts(self)
+    class(mechanism_type), intent(in) :: self   !< the mechanism
+
+    has_contacts = .false.
+    if (allocated(self%contacts)) has_contacts = size(self%contacts) > 0
+  end function has_contacts
 
   !> Mark the coordinates on which loads and motors depend or act, and those that stops bound.
   pure subroutine mark_loaded_coordinates(self, loaded)

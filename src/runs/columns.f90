@@ -5,6 +5,8 @@ module mech9_columns
   use mech9_text, only: string_type, to_text
   use mech9_request, only: output_settings_type
   use mech9_motor, only: motor_action_type
+  use mech9_motion_view, only: link_motion_type
+  use mech9_contact, only: contact_place_type
   use mech9_mechanism, only: mechanism_type
   use mech9_result_units, only: unit_of, unit_name, force_unit_name
   use mech9_plan, only: plan_type
@@ -14,6 +16,7 @@ module mech9_columns
   use mech9_derivative_columns, only: derivative_columns_type, new_derivative_columns
   use mech9_poses, only: poses_type, poses_of
   use mech9_frame_motion, only: point_motion
+  use mech9_contact_motion, only: place_of_contact
   implicit none
   private
   public :: columns_type, kinematic_columns
@@ -37,6 +40,7 @@ module mech9_columns
     integer :: energies = 0                 !< how many columns belong to energies, after those of motors
     integer :: stops = 0                    !< how many columns belong to stops, after those of energies
     integer :: frictions = 0                !< how many columns belong to frictions, after those of stops
+    integer :: contacts = 0                 !< how many columns belong to contacts of links, after those of frictions
     integer :: varied = 0                   !< how many columns, from the second one on, have derivatives by parameters
     integer :: sensitivities = 0            !< how many columns, the last ones, are derivatives by parameters
     type(derivative_columns_type) :: derived    !< those of the motion
@@ -56,6 +60,8 @@ module mech9_columns
     procedure :: fill_stops
     procedure :: append_frictions
     procedure :: fill_frictions
+    procedure :: append_contacts
+    procedure :: fill_contacts
     procedure :: append_energies
     procedure :: append_sensitivities
     procedure :: find_unit_per
@@ -294,6 +300,48 @@ contains
       row(at) = state%heat(i)
     end do
   end subroutine fill_frictions
+
+  !> Append the columns of contacts of links: gap, normal force and friction of each.
+  subroutine append_contacts(self, mechanism)
+    class(columns_type), intent(inout) :: self     !< the columns
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    integer :: i
+
+    if (.not. mechanism%has_contacts()) return
+    self%contacts = 3*size(mechanism%contacts)
+    do i = 1, size(mechanism%contacts)
+      call self%append('K'//to_text(i)//'.gap', 'm', 'gap of contact '//to_text(i))
+      call self%append('K'//to_text(i)//'.fn', 'N', 'normal force of contact '//to_text(i))
+      call self%append('K'//to_text(i)//'.ft', 'N', 'friction of contact '//to_text(i))
+    end do
+  end subroutine append_contacts
+
+  !> Fill the columns of contacts of links in a row.
+  pure subroutine fill_contacts(self, mechanism, plan, state, row)
+    class(columns_type), intent(in) :: self             !< the columns
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(plan_type), intent(in) :: plan                 !< its plan
+    type(state_type), intent(in) :: state               !< motion of the mechanism, with the forces of contacts
+    real(wp), intent(inout) :: row(:)                   !< numbers of one row, one for each column
+    type(contact_place_type) :: place
+    type(link_motion_type) :: ball, surface
+    integer :: at, i
+
+    at = self%motion + self%forces() + self%motors + self%energies + self%stops + self%frictions
+    do i = 1, self%contacts/3
+      call place_of_contact(mechanism%contacts(i), plan, state, place, ball, surface)
+      row(at + 1) = place%gap
+      row(at + 2) = mechanism%contacts(i)%normal_force(place)
+      row(at + 3) = 0.0_wp
+      if (allocated(state%contact_force)) then
+        associate (force => state%contact_force(:, i))
+          row(at + 2) = dot_product(force, place%normal)
+          row(at + 3) = norm2(force - row(at + 2)*place%normal)
+        end associate
+      end if
+      at = at + 3
+    end do
+  end subroutine fill_contacts
 
   !> Append the columns of energies.
   pure subroutine append_energies(self)

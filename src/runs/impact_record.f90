@@ -1,11 +1,12 @@
 !> The impulses of pairs by impacts: the reactions of a mechanism at rest, without weight and loads, whose accelerations are the changes of
-!> the rates, under the impulses of the stops in place of forces.
+!> the rates, under the impulses of stops and contacts in place of forces.
 module mech9_impact_record
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_model, only: model_type
   use mech9_mechanism, only: mechanism_type
   use mech9_coordinate_load, only: coordinate_load_type
+  use mech9_contact_load, only: contact_load_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type, copy_state
   use mech9_frame_motion, only: spread_all_velocities
@@ -18,7 +19,7 @@ module mech9_impact_record
 
   !> The impulses of pairs at all times of impacts. Parts are polymorphic, which keeps the code of copies small.
   type, extends(impact_watcher_type) :: impact_record_type
-    class(mechanism_type), allocatable, private :: mechanism   !< without weight, with a load on each coordinate that a stop bounds
+    class(mechanism_type), allocatable, private :: mechanism   !< without weight, with a load for each stop and contact
     integer, allocatable, private :: pairs(:)                  !< pairs whose impulses are kept, by their coordinates
     integer, private :: count = 0                              !< times so far
     real(wp), allocatable, private :: times(:)                 !< these times, then room for more [s]
@@ -35,7 +36,7 @@ contains
     type(model_type), intent(in) :: model                  !< the model, with rigid stops
     integer, intent(in) :: pairs(:)                        !< pairs whose impulses are kept, by their coordinates
     type(impact_record_type), intent(out) :: record        !< the record, without impacts
-    integer :: i
+    integer :: i, n
 
     record%pairs = pairs
     allocate (record%times(16), record%wrenches(6, size(pairs), 16))
@@ -43,9 +44,14 @@ contains
     associate (m => record%mechanism)
       m%gravity = 0.0_wp
       deallocate (m%loads, m%motors)
-      allocate (m%motors(0), m%loads(size(m%stops)))
+      n = 0
+      if (m%has_contacts()) n = size(m%contacts)
+      allocate (m%motors(0), m%loads(size(m%stops) + n))
       do i = 1, size(m%stops)
         allocate (m%loads(i)%load, source=coordinate_load_type(coordinate=m%stops(i)%coordinate, force=1.0_wp))
+      end do
+      do i = 1, n
+        allocate (m%loads(size(m%stops) + i)%load, source=contact_load_type(contact=m%contacts(i), number=i))
       end do
     end associate
   end subroutine new_impact_record

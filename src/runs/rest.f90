@@ -100,7 +100,7 @@ contains
       call find_equilibrium(model%mechanism, model%problem%partition, self%plan, self%start, found(1), err)
       if (allocated(err)) deallocate (found)
     end if
-    if (model%mechanism%has_rigid_stops()) then
+    if (model%mechanism%has_rigid_ends()) then
       if (allocated(err)) then
         if (err%code == exit_assembly .and. .not. allocated(found)) allocate (found(0))
       end if

@@ -64,7 +64,7 @@ contains
     source%simulation => simulation
     call find_columns(simulation%model, simulation%with_energies, simulation%with_error, source%columns, source%forces)
     associate (model => simulation%model)
-      if (.not. (model%request%output%reactions .and. model%mechanism%has_rigid_stops())) return
+      if (.not. (model%request%output%reactions .and. model%mechanism%has_rigid_ends())) return
       call new_impact_record(model, numbers_of(reacting_pairs(model)), impacts)
       allocate (simulation%impacts, source=impacts)
     end associate
@@ -85,6 +85,7 @@ contains
     call columns%append_stops(model%mechanism)
     if (model%mechanism%has_frictions() .and. (model%request%output%with_forces() .or. .not. model%is_driven())) &
       call columns%append_frictions(model%mechanism, heats=.not. model%is_driven())
+    call columns%append_contacts(model%mechanism)
     call columns%append('closure', 'm', 'largest error of a closed chain')
     if (model%request%output%conditioning) call columns%append('conditioning', '1', 'least singular value of the worst chains')
     if (with_error) call columns%append('error', 'rad,m', 'estimated error of the coordinates and points')
@@ -358,7 +359,8 @@ contains
       end if
       call self%columns%fill_stops(simulation%model%mechanism, state, row)
       call self%columns%fill_frictions(simulation%model%mechanism, state, row)
-      next = next + self%columns%stops + self%columns%frictions + 1
+      call self%columns%fill_contacts(simulation%model%mechanism, plan, state, row)
+      next = next + self%columns%stops + self%columns%frictions + self%columns%contacts + 1
       row(next) = simulation%closure
       if (simulation%with_conditioning) then
         next = next + 1

@@ -12,7 +12,7 @@ module mech9_dynamic_report
   use mech9_run_outcome, only: run_outcome_type
   use mech9_integrator, only: integration_statistics_type
   use mech9_simulation, only: coordinate_change_type
-  use mech9_motion_event, only: motion_events_type, event_impact, event_close, event_stick, event_slip
+  use mech9_motion_event, only: motion_events_type, event_impact, event_close, event_stick, event_slip, event_lift
   use mech9_free_simulation, only: free_simulation_type
   use mech9_run_words, only: duration, each
   use mech9_run_facts, only: method_of
@@ -99,6 +99,8 @@ contains
           write (unit, '(a)') ' is hit, impulse '//to_text(event%impulse, 4)
         case (event_close)
           write (unit, '(a)') ' closes'
+        case (event_lift)
+          write (unit, '(a)') ' lifts off'
         case default
           write (unit, '(a)') ' opens'
         end select

@@ -102,9 +102,9 @@ contains
     start%t = t
     call begin_with_angles(self%model, self%requested, self%plan, start, self%driven, self%angles, err)
     if (allocated(err)) return
-    call find_contacts(self%model%mechanism%stops, self%contacts)
-    if (self%model%mechanism%has_rigid_stops()) then
-      call self%contacts%note(self%driven%state)
+    call find_contacts(self%model%mechanism, self%contacts)
+    if (self%model%mechanism%has_rigid_ends()) then
+      call self%contacts%note(self%model%mechanism, self%plan, self%driven%state)
       call check_stops(self%model, self%plan, self%angles%held%drives, self%driven, t, self%contacts, err)
     end if
     if (allocated(self%frictions) .and. .not. allocated(err)) call find_frictions(self, err)
@@ -126,7 +126,7 @@ contains
       call self%stop_if_interrupted(self%driven%predictor%t, err)
       if (allocated(err)) return
     end do
-    if (self%model%mechanism%has_rigid_stops()) &
+    if (self%model%mechanism%has_rigid_ends()) &
       call check_stops(self%model, self%plan, self%angles%held%drives, self%driven, before, self%contacts, err)
     if (allocated(self%frictions) .and. .not. allocated(err)) call find_frictions(self, err)
   end subroutine go_to

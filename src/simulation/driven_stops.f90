@@ -3,7 +3,7 @@ module mech9_driven_stops
   use mech9_kinds, only: wp
   use mech9_event_tolerances, only: touching
   use mech9_error, only: error_type, raise, exit_singular
-  use mech9_simulation_failures, only: failure_stop_passed
+  use mech9_simulation_failures, only: failure_stop_passed, failure_contact_passed
   use mech9_hermite, only: cubic_between
   use mech9_law, only: drive_slot_type
   use mech9_model, only: model_type
@@ -11,7 +11,7 @@ module mech9_driven_stops
   use mech9_plan, only: plan_type
   use mech9_driven_motion, only: driven_motion_type, advance
   use mech9_driven_angles, only: copy_driven_motion
-  use mech9_stop_contacts, only: stop_contacts_type
+  use mech9_stop_contacts, only: stop_contacts_type, gap_motion
   implicit none
   private
   public :: check_stops
@@ -40,7 +40,7 @@ contains
     h = driven%state%t - before
     first = 0
     soonest = huge(soonest)
-    if (contacts%in_doubt(plan, driven%state, h)) then
+    if (contacts%in_doubt(model%mechanism, plan, driven%state, h)) then
       do i = 1, size(contacts%ends)
         if (.not. contacts%ends(i)%is_rigid) cycle
         call find_passing(i, passed, t_passed, t_behind)
@@ -53,7 +53,7 @@ contains
       end do
     end if
     if (first > 0) call fail(first, t_first, t_told)
-    call contacts%note(driven%state)
+    call contacts%note(model%mechanism, plan, driven%state)
   contains
     !> Find the first passing of an end since the last output: a time at which the gap is clearly below zero, and by bisection from there
     !> that at which it is zero.
@@ -72,7 +72,7 @@ contains
           call find_least(i, t_behind - h/looks, t_behind + h/looks, t_behind)
         end if
         deepest = gap_at(i, t_behind)
-        passed = deepest < -touching*plan%unit_of(contacts%ends(i)%coordinate)
+        passed = deepest < -touching*contacts%ends(i)%unit(plan)
         if (passed) exit
       end do
       if (.not. passed) return
@@ -94,17 +94,14 @@ contains
     logical function may_turn(i, look)
       integer, intent(in) :: i      !< number of the end
       integer, intent(in) :: look   !< number of the look, below the last one
-      real(wp) :: gaps(-1:1)
+      real(wp) :: gaps(-1:1), now(2)
       integer :: k
 
-      associate (end => contacts%ends(i), state => driven%state)
-        do k = -1, 1
-          gaps(k) = end%gap(cubic_between(contacts%q(i), h*contacts%dq(i), state%q(end%coordinate), h*state%dq(end%coordinate), &
-                                          real(look + k, wp)/looks))
-        end do
-        may_turn = gaps(0) <= min(gaps(-1), gaps(1)) .and. &
-                   gaps(0) < 0.1_wp*abs(h)*max(abs(contacts%dq(i)), abs(state%dq(end%coordinate)))
-      end associate
+      now = gap_motion(model%mechanism, plan, driven%state, contacts%ends(i))
+      do k = -1, 1
+        gaps(k) = cubic_between(contacts%gap(i), h*contacts%rate(i), now(1), h*now(2), real(look + k, wp)/looks)
+      end do
+      may_turn = gaps(0) <= min(gaps(-1), gaps(1)) .and. gaps(0) < 0.1_wp*abs(h)*max(abs(contacts%rate(i)), abs(now(2)))
     end function may_turn
 
     !> Find the time between two times at which the gap is least, by golden section; a time at which it is below zero will do.
@@ -123,7 +120,7 @@ contains
         x = [b - golden*(b - a), a + golden*(b - a)]
         gaps = [gap_at(i, x(1)), gap_at(i, x(2))]
         time = x(minloc(gaps, dim=1))
-        if (minval(gaps) < -touching*plan%unit_of(contacts%ends(i)%coordinate)) return
+        if (minval(gaps) < -touching*contacts%ends(i)%unit(plan)) return
         if (gaps(1) < gaps(2)) then
           b = x(2)
         else
@@ -140,14 +137,15 @@ contains
       real(wp), intent(in) :: time   !< the time [s]
       type(driven_motion_type) :: other
       type(error_type), allocatable :: failure
+      real(wp) :: motion(2)
 
-      associate (end => contacts%ends(i))
-        gap = end%gap(driven%state%q(end%coordinate))
-        if (.not. abs(time - driven%state%t) > 0.0_wp) return
+      motion = gap_motion(model%mechanism, plan, driven%state, contacts%ends(i))
+      if (abs(time - driven%state%t) > 0.0_wp) then
         call copy_driven_motion(driven, other)
         call advance(drives, plan, other, time, failure)
-        if (.not. allocated(failure)) gap = end%gap(other%state%q(end%coordinate))
-      end associate
+        if (.not. allocated(failure)) motion = gap_motion(model%mechanism, plan, other%state, contacts%ends(i))
+      end if
+      gap = motion(1)
     end function gap_at
 
     !> Fail because an end was passed.
@@ -157,10 +155,15 @@ contains
       real(wp), intent(in) :: t_behind      !< a time behind it, for which the coordinate is told [s]
 
       associate (end => contacts%ends(i))
-        call raise(err, exit_singular, failure_stop_passed)
+        call raise(err, exit_singular, merge(failure_stop_passed, failure_contact_passed, end%is_stop()))
         err%failure%t = t_passed
         err%failure%t_stop = t_behind
-        err%failure%number = end%stop
+        err%failure%number = end%number()
+        if (.not. end%is_stop()) then
+          err%failure%values = reshape([gap_at(i, t_behind)], [1, 1])
+          err%place = model%mechanism%contacts(end%contact)%place
+          return
+        end if
         err%failure%coordinates = [end%coordinate]
         err%failure%values = reshape([end%limit, end%limit + end%direction*gap_at(i, t_behind)], [1, 2]) &
                              /unit_of(model%mechanism, end%coordinate)

@@ -11,7 +11,8 @@ module mech9_event_passing
   use mech9_hermite, only: hermite_type, build_hermite, cubic_between
   use mech9_integrated_motion, only: integrated_motion_type
   use mech9_event_search, only: locate, value_at, of_motor, of_contact, of_rate
-  use mech9_friction_passing, only: find_friction
+  use mech9_friction_passing, only: find_friction, find_rubbing
+  use mech9_stop_contacts, only: gap_motion, gap_acceleration
   use mech9_friction_heat, only: take_heat
   implicit none
   private
@@ -31,33 +32,39 @@ contains
   subroutine stop_at_events(motion, err)
     type(integrated_motion_type), intent(inout) :: motion   !< the motion at the end of a step
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    real(wp) :: from, times(3), y(size(motion%y))
-    integer :: motor, contact, friction, found(3), soonest, met, rubbing
-    logical :: motors, contacts, frictions
+    real(wp) :: from, times(4), y(size(motion%y))
+    integer :: motor, contact, friction, rubbing, found(4), soonest, met, slipping
+    logical :: motors, contacts, frictions, rubs
 
     motors = motion%limits%is_needed(motion%system)
     contacts = size(motion%contacts%ends) > 0
     frictions = allocated(motion%system%friction)
+    rubs = .false.
+    if (allocated(motion%system%contact)) &
+      rubs = any(motion%system%contact%acts .and. motion%system%model%mechanism%contacts%static_friction > 0.0_wp)
     if (.not. (motors .or. contacts .or. frictions)) return
     call motion%dense_output%start_of_step(from, y)
     if (contacts) contacts = motion%contacts%any_held() .or. &
-                             motion%contacts%in_doubt(motion%system%plan, motion%system%state, motion%t - from)
-    if (motors .or. contacts .or. frictions .or. motion%system%interval%contact > 0) &
+                             motion%contacts%in_doubt(motion%system%model%mechanism, motion%system%plan, motion%system%state, &
+                                                      motion%t - from)
+    if (motors .or. contacts .or. frictions .or. rubs .or. motion%system%interval%contact > 0) &
       call motion%system%move_to(motion%t, motion%y, err)
     if (allocated(err)) return
     motor = 0
     contact = 0
     friction = 0
+    rubbing = 0
     associate (interval => motion%system%interval)
       if (interval%is_end(motion%t)) then
-        rubbing = interval%friction
+        slipping = interval%friction
         motors = .false.
         ! the step was judged before it was made anew up to the event
         contacts = contacts .and. .not. interval%ends_at_event()
         frictions = frictions .and. .not. interval%ends_at_event()
+        rubs = rubs .and. .not. interval%ends_at_event()
         met = interval%contact
         if (met > 0) call correct_landing(motion, from, met, err)
-        if (rubbing > 0 .and. .not. allocated(err)) call correct_rest(motion, from, rubbing, err)
+        if (slipping > 0 .and. .not. allocated(err)) call correct_rest(motion, from, slipping, err)
       end if
     end associate
     if (allocated(err)) return
@@ -65,19 +72,20 @@ contains
     if (motors) call find_motor(motion, from, motor, times(1), err)
     if (contacts .and. .not. allocated(err)) call find_contact(motion, from, y, contact, times(2), err)
     if (frictions .and. .not. allocated(err)) call find_friction(motion, from, y, friction, times(3), err)
+    if (rubs .and. .not. allocated(err)) call find_rubbing(motion, from, y, rubbing, times(4), err)
     if (allocated(err)) return
-    found = [motor, contact, friction]
+    found = [motor, contact, friction, rubbing]
     if (any(found > 0)) then
       soonest = minloc(abs(times - from), dim=1, mask=found > 0)
       found(:soonest - 1) = 0
       found(soonest + 1:) = 0
       call motion%step_back(times(soonest), err)
-      call motion%system%interval%end_at_event(times(soonest), motor=found(1), contact=found(2), friction=found(3))
+      call motion%system%interval%end_at_event(times(soonest), found(1), found(2), found(3), found(4))
       motion%contacts%corrections = 0
     else
       if (allocated(motion%system%friction) .and. abs(motion%t - from) > 0.0_wp) call take_heat(motion, err)
       if (allocated(err)) return
-      if (motors .or. contacts .or. allocated(motion%system%friction)) call motion%system%move_to(motion%t, motion%y, err)
+      if (motors .or. contacts .or. rubs .or. allocated(motion%system%friction)) call motion%system%move_to(motion%t, motion%y, err)
       if (.not. allocated(err)) call motion%note_start(err)
     end if
   end subroutine stop_at_events
@@ -89,13 +97,14 @@ contains
     real(wp), intent(in) :: from                            !< start of the step [s]
     integer, intent(in) :: contact                          !< number of the end
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    real(wp) :: gap, rate, unit, change
+    real(wp) :: now(2), gap, rate, unit, change
 
     associate (end => motion%contacts%ends(contact), system => motion%system, corrections => motion%contacts%corrections)
       if (end%held .or. .not. end%is_rigid) return
-      unit = system%plan%unit_of(end%coordinate)
-      gap = end%gap(system%state%q(end%coordinate))
-      rate = end%direction*system%state%dq(end%coordinate)*sign(1.0_wp, motion%t - from)
+      unit = end%unit(system%plan)
+      now = gap_motion(system%model%mechanism, system%plan, system%state, end)
+      gap = now(1)
+      rate = now(2)*sign(1.0_wp, motion%t - from)
       if (abs(gap) <= epsilon(gap)*max(unit, abs(end%limit)) .and. rate < 0.0_wp) return
       change = huge(change)
       if (rate < 0.0_wp) change = -gap/rate
@@ -105,7 +114,7 @@ contains
         corrections = corrections + 1
         change = motion%t + change
         call motion%step_back(change, err)
-        call system%interval%end_at_event(change, 0, contact, 0)
+        call system%interval%end_at_event(change, 0, contact, 0, 0)
       else if (gap > touching*unit .or. rate > 0.0_wp) then
         call system%interval%forget_event()
         call motion%note_start(err)
@@ -131,7 +140,7 @@ contains
       corrections = corrections + 1
       change = motion%t + change
       call motion%step_back(change, err)
-      call system%interval%end_at_event(change, 0, 0, friction)
+      call system%interval%end_at_event(change, 0, 0, friction, 0)
     end associate
   end subroutine correct_rest
 
@@ -166,7 +175,7 @@ contains
     integer, intent(out) :: contact                         !< number of the end; 0: none
     real(wp), intent(out) :: t                              !< time of the passing [s]
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    real(wp), dimension(size(motion%contacts%ends), 2) :: q, dq, ddq
+    real(wp), dimension(size(motion%contacts%ends), 2) :: gap, rate, acceleration
     real(wp) :: found_at
     integer :: i
     logical :: passed
@@ -181,7 +190,7 @@ contains
       if (motion%contacts%ends(i)%held) then
         call find_release(motion, i, from, found_at, passed, err)
       else
-        call find_meeting(motion, i, from, q(i, :), dq(i, :), ddq(i, :), found_at, passed, err)
+        call find_meeting(motion, i, from, gap(i, :), rate(i, :), acceleration(i, :), found_at, passed, err)
       end if
       if (allocated(err)) return
       if (.not. passed) cycle
@@ -190,15 +199,17 @@ contains
       t = found_at
     end do
   contains
-    !> Keep the motion of the coordinates at one end of the step.
+    !> Keep the motion of the gaps at one end of the step.
     subroutine keep(place)
       integer, intent(in) :: place   !< 1: at the start, 2: at the end
+      real(wp) :: now(2)
 
       do i = 1, size(motion%contacts%ends)
-        associate (k => motion%contacts%ends(i)%coordinate)
-          q(i, place) = motion%system%state%q(k)
-          dq(i, place) = motion%system%state%dq(k)
-          ddq(i, place) = motion%system%state%ddq(k)
+        associate (end => motion%contacts%ends(i), system => motion%system)
+          now = gap_motion(system%model%mechanism, system%plan, system%state, end)
+          gap(i, place) = now(1)
+          rate(i, place) = now(2)
+          acceleration(i, place) = gap_acceleration(system%model%mechanism, system%plan, system%state, end)
         end associate
       end do
     end subroutine keep
@@ -228,13 +239,13 @@ contains
   end subroutine find_release
 
   !> Find the time at which an end that is not held is met, or a compliant one is left.
-  subroutine find_meeting(motion, i, from, q, dq, ddq, t, passed, err)
+  subroutine find_meeting(motion, i, from, gap, gap_rate, second_rate, t, passed, err)
     type(integrated_motion_type), intent(inout) :: motion   !< the motion at the end of a step
     integer, intent(in) :: i                                !< number of the end
     real(wp), intent(in) :: from                            !< start of the step [s]
-    real(wp), intent(in) :: q(2)                            !< the coordinate at both ends of the step [rad, m]
-    real(wp), intent(in) :: dq(2)                           !< its rates there [rad/s, m/s]
-    real(wp), intent(in) :: ddq(2)                          !< its accelerations there [rad/s^2, m/s^2]
+    real(wp), intent(in) :: gap(2)                          !< the gap at both ends of the step [rad, m]
+    real(wp), intent(in) :: gap_rate(2)                     !< its rates there [rad/s, m/s]
+    real(wp), intent(in) :: second_rate(2)                  !< its second derivatives there [rad/s^2, m/s^2]
     real(wp), intent(out) :: t                              !< time of the meeting [s]
     logical, intent(out) :: passed                          !< it is met within the step
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
@@ -249,18 +260,18 @@ contains
     h = motion%t - from
     associate (end => motion%contacts%ends(i))
       ! the gap is positive on the side where the motion is
-      sign_of_gap = real(end%direction, wp)
-      if (end%closed) sign_of_gap = -sign_of_gap
-      call build_hermite([from, motion%t], reshape(q, [1, 2]), reshape(dq, [1, 2]), reshape(ddq, [1, 2]), polynomial)
+      sign_of_gap = merge(-1.0_wp, 1.0_wp, end%closed)
+      call build_hermite([from, motion%t], reshape(gap, [1, 2]), reshape(gap_rate, [1, 2]), reshape(second_rate, [1, 2]), &
+                         polynomial)
       before = from
-      before_rate = sign_of_gap*dq(1)*sign(1.0_wp, h)
-      leaves = sign_of_gap*(q(1) - end%limit) < 0.0_wp .and. before_rate > 0.0_wp
+      before_rate = sign_of_gap*gap_rate(1)*sign(1.0_wp, h)
+      leaves = sign_of_gap*gap(1) < 0.0_wp .and. before_rate > 0.0_wp
       do look = 1, looks
         t = from + real(look, wp)/looks*h
         if (look == looks) t = motion%t
         call polynomial%evaluate(t, at, rate, acceleration)
-        margin = abs(at(1) - cubic_between(q(1), h*dq(1), q(2), h*dq(2), (t - from)/h))
-        at = sign_of_gap*(at - end%limit)
+        margin = abs(at(1) - cubic_between(gap(1), h*gap_rate(1), gap(2), h*gap_rate(2), (t - from)/h))
+        at = sign_of_gap*at
         rate = sign_of_gap*rate*sign(1.0_wp, h)
         if (before_rate < 0.0_wp .and. rate(1) > 0.0_wp .and. at(1) - abs(rate(1)*(t - before)) < margin) then
           ! it turns back between these times: near the end of the stop, perhaps beyond it
@@ -271,7 +282,7 @@ contains
           if (value > 0.0_wp) t = turn
         else
           value = -1.0_wp
-          if (at(1) < margin + round_off_of_gaps*motion%system%plan%unit_of(end%coordinate)) &
+          if (at(1) < margin + round_off_of_gaps*end%unit(motion%system%plan)) &
             call value_at(motion, of_contact, i, t, value, err)
           if (allocated(err)) return
         end if
@@ -287,7 +298,7 @@ contains
     ! a motion that just left the end turns before it comes back
     call value_at(motion, of_contact, i, before, value, err)
     if (allocated(err)) return
-    if (value > -touching*motion%system%plan%unit_of(motion%contacts%ends(i)%coordinate)) then
+    if (value > -touching*motion%contacts%ends(i)%unit(motion%system%plan)) then
       call locate_turn(motion, i, before, t, turn, err)
       if (allocated(err)) return
       before = turn
@@ -295,7 +306,7 @@ contains
     call locate(motion, of_contact, i, before, t, passed, err)
   end subroutine find_meeting
 
-  !> Find the time between two times at which the rate of a contact's coordinate changes its sign; the first one where it does not.
+  !> Find the time between two times at which the rate of a gap changes its sign; the first one where it does not.
   subroutine locate_turn(motion, i, from, to, t, err)
     type(integrated_motion_type), intent(inout) :: motion   !< the motion at the end of a step
     integer, intent(in) :: i                                !< number of the end

@@ -5,14 +5,19 @@ module mech9_event_search
   use mech9_simulation_tolerances, only: round_off_of_gaps, shortest_step, least_motion
   use mech9_error, only: error_type
   use mech9_limit_watch, only: find_excess
+  use mech9_motion_view, only: link_motion_type
+  use mech9_contact, only: contact_place_type
+  use mech9_contact_motion, only: place_of_contact
+  use mech9_stop_contacts, only: gap_motion
   use mech9_integrated_motion, only: integrated_motion_type
   implicit none
   private
-  public :: locate, value_at, of_motor, of_contact, of_rate, of_friction, of_paradox
+  public :: locate, value_at, of_motor, of_contact, of_rate, of_friction, of_paradox, of_rubbing
 
   !> Values that are zero at a time that is searched: the excess of a motor, the passing of an end of a stop, the rate of its coordinate,
-  !> how far a pair with friction is beyond its present mode, and minus the determinant of frictions.
-  integer, parameter :: of_motor = 1, of_contact = 2, of_rate = 3, of_friction = 4, of_paradox = 5
+  !> how far a pair with friction is beyond its present mode, minus the determinant of frictions, and how far the friction of a contact of
+  !> links is beyond its present mode.
+  integer, parameter :: of_motor = 1, of_contact = 2, of_rate = 3, of_friction = 4, of_paradox = 5, of_rubbing = 6
   !> Trials of the search for a time.
   integer, parameter :: most_trials = 100
 
@@ -67,7 +72,7 @@ contains
     real(wp), intent(in) :: t                               !< time within the last step [s]
     real(wp), intent(out) :: value                          !< of a motor in parts of its limit
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    real(wp) :: from, y(size(motion%y))
+    real(wp) :: from, y(size(motion%y)), gap(2)
     logical :: found
 
     call motion%dense_output%start_of_step(from, y)
@@ -91,8 +96,11 @@ contains
       associate (friction => motion%system%friction)
         value = -friction%balance%least_determinant(motion%system%model%mechanism%frictions, friction%modes)
       end associate
+    case (of_rubbing)
+      value = passing_of_rubbing(motion, i)
     case default
-      value = motion%system%state%dq(motion%contacts%ends(i)%coordinate)
+      gap = gap_motion(motion%system%model%mechanism, motion%system%plan, motion%system%state, motion%contacts%ends(i))
+      value = gap(2)
     end select
     if (what < 0) value = -value
   end subroutine value_at
@@ -101,21 +109,42 @@ contains
   pure real(wp) function passing_of_contact(motion, i) result(value)
     type(integrated_motion_type), intent(in) :: motion   !< the motion
     integer, intent(in) :: i                             !< number of the end
+    real(wp) :: gap(2)
     integer :: j
 
     associate (end => motion%contacts%ends(i), system => motion%system)
-      if (end%held) then
+      if (end%held .and. end%contact > 0) then
+        value = -system%contact%forces(1, end%contact) - round_off_of_impacts*norm2(system%contact%forces(:, end%contact))
+      else if (end%held) then
         value = -end%direction*system%state%stop_force(end%stop)
         do j = 1, size(system%held)
           if (system%held(j)%stop == end%stop) value = value - round_off_of_impacts*system%held(j)%size_of_terms
         end do
       else
-        value = -end%gap(system%state%q(end%coordinate))
+        gap = gap_motion(system%model%mechanism, system%plan, system%state, end)
+        value = -gap(1)
         if (end%closed) value = -value
-        if (end%is_rigid) value = value - round_off_of_gaps*max(system%plan%unit_of(end%coordinate), abs(end%limit))
+        if (end%is_rigid) value = value - round_off_of_gaps*max(end%unit(system%plan), abs(end%limit))
       end if
     end associate
   end function passing_of_contact
+
+  !> How far the friction of a contact of links is beyond its present mode, in the state of the system: above zero where it should act otherwise.
+  pure real(wp) function passing_of_rubbing(motion, i) result(value)
+    type(integrated_motion_type), intent(in) :: motion   !< the motion
+    integer, intent(in) :: i                             !< number of the contact of links
+    type(contact_place_type) :: place
+    type(link_motion_type) :: ball, surface
+
+    associate (system => motion%system, contact => motion%system%model%mechanism%contacts(i))
+      if (system%contact%sticks(i)) then
+        value = system%contact%excess(contact, i) - round_off_of_impacts
+      else
+        call place_of_contact(contact, system%plan, system%state, place, ball, surface)
+        value = -dot_product(place%slip, system%contact%direction(:, i))
+      end if
+    end associate
+  end function passing_of_rubbing
 
   !> How far a pair with friction is beyond its present mode, in the state of the system: above zero where it should act otherwise.
   pure real(wp) function passing_of_friction(motion, i) result(value)

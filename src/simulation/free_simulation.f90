@@ -27,7 +27,8 @@ module mech9_free_simulation
   use mech9_variable_model, only: variable_model_type
   use mech9_sensitivity, only: sensitivity_type, new_given_sensitivity
   use mech9_varied_motion, only: varied_motion_type
-  use mech9_simulation, only: simulation_type, simulation_statistics_type, coordinate_change_type, standing_type, refuse_frictions
+  use mech9_simulation, only: simulation_type, simulation_statistics_type, coordinate_change_type, standing_type, &
+    refuse_frictions, refuse_contacts
   implicit none
   private
   public :: free_simulation_type, new_free_simulation
@@ -120,7 +121,7 @@ contains
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
 
     self%motion%t = t
-    call find_contacts(self%model%mechanism%stops, self%motion%contacts)
+    call find_contacts(self%model%mechanism, self%motion%contacts)
     if (self%model%mechanism%has_frictions()) then
       allocate (self%motion%heat(size(self%model%mechanism%frictions)), source=0.0_wp)
       self%motion%heat_before = self%motion%heat
@@ -141,8 +142,11 @@ contains
     integer :: before
 
     before = self%motion%systems
-    if (at_start) call self%motion%meet_events(0, 0, 0.0_wp*self%motion%system%state%dq, .true., self%events, self%impacts, &
-                                                err)
+    ! angles are continued within the step, which is forgotten behind the event
+    if (.not. at_start) call continue_to_step(self, err)
+    if (allocated(err)) return
+    if (at_start) call self%motion%meet_events(0, 0, 0, 0.0_wp*self%motion%system%state%dq, .true., self%events, &
+                                                self%impacts, err)
     if (.not. at_start) call self%motion%pass_joint(self%events, self%impacts, err)
     if (allocated(err)) return
     call self%stall%forget()
@@ -203,7 +207,7 @@ contains
       if (allocated(self%motion%system%friction)) self%motion%heat = self%motion%system%state%heat
       self%motion%t = self%t
       self%motion%y = self%motion%system%vector()
-      call self%motion%meet_events(0, 0, 0.0_wp*self%motion%system%state%dq, .false., self%events, self%impacts, err)
+      call self%motion%meet_events(0, 0, 0, 0.0_wp*self%motion%system%state%dq, .false., self%events, self%impacts, err)
     else
       call self%motion%restart(self%t, self%motion%system%vector(), err)
     end if
@@ -358,16 +362,25 @@ contains
 
     associate (motion => self%motion)
       if (size(motion%angles%joints) == 0 .and. size(motion%angles%held%rods) == 0) return
-      if (motion%angles%in_use()) then
-        call unpack_state(motion%system%plan, motion%t, motion%y, motion%system%state)
-        call self%continue_angles(motion%t, err)
-        if (allocated(err)) return
-      end if
-      call motion%change_angles(changed, err)
+      call continue_to_step(self, err)
+      if (.not. allocated(err)) call motion%change_angles(changed, err)
+      if (allocated(err)) return
     end associate
     if (changed) changed = .not. (same_replaced(self) .and. same_independent(self))
     if (changed) call add_coordinate_change(self)
   end subroutine change_angles
+
+  !> Continue the angles of the data file to the end of the last step, if others are integrated.
+  subroutine continue_to_step(self, err)
+    class(free_simulation_type), intent(inout) :: self   !< the simulation
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
+
+    associate (motion => self%motion)
+      if (.not. motion%angles%in_use()) return
+      call unpack_state(motion%system%plan, motion%t, motion%y, motion%system%state)
+      call self%continue_angles(motion%t, err)
+    end associate
+  end subroutine continue_to_step
 
   !> The coordinates of hinges whose angles are replaced. The angles of joints with several freedoms are the program's own matter.
   function replaced_hinges(self) result(coordinates)
@@ -469,6 +482,7 @@ contains
     type(error_type), allocatable, intent(out) :: err                  !< allocated if it failed
 
     call refuse_frictions(self%model, err)
+    if (.not. allocated(err)) call refuse_contacts(self%model, err)
     if (.not. allocated(err)) call self%motion%begin_sensitivity(variable, err)
     if (allocated(err)) return
     call new_given_sensitivity(self%model, highest, sensitivity)

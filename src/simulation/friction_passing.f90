@@ -1,14 +1,18 @@
-!> The time within a step at which a pair with friction comes to rest or begins to slip, or at which frictions no longer have one solution.
+!> The time within a step at which a pair or a contact with friction comes to rest or begins to slip, or at which frictions no longer have one
+!> solution.
 module mech9_friction_passing
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
+  use mech9_motion_view, only: link_motion_type
+  use mech9_contact, only: contact_place_type
+  use mech9_contact_motion, only: place_of_contact, acceleration_of_contact
   use mech9_friction_events, only: fail_in_paradox
   use mech9_hermite, only: cubic_between
   use mech9_integrated_motion, only: integrated_motion_type
-  use mech9_event_search, only: locate, value_at, of_friction, of_paradox
+  use mech9_event_search, only: locate, value_at, of_friction, of_paradox, of_rubbing
   implicit none
   private
-  public :: find_friction
+  public :: find_friction, find_rubbing
 
   !> Points within a step at which rates and utilizations are looked at; the last one is its end.
   integer, parameter :: looks = 16
@@ -48,9 +52,10 @@ contains
       if (motion%system%model%mechanism%frictions(i)%is_smooth) cycle
       associate (modes => motion%system%friction%modes)
         if (modes%slips(i)) then
-          call find_rest(motion, i, from, modes%direction(i)*dq(i, :), modes%direction(i)*ddq(i, :), found_at, passed, err)
+          call find_rest(motion, of_friction, i, from, modes%direction(i)*dq(i, :), modes%direction(i)*ddq(i, :), found_at, &
+                         passed, err)
         else if (modes%group(i) == 0 .or. modes%leads(i)) then
-          call find_slip(motion, i, from, found_at, passed, err)
+          call find_slip(motion, of_friction, i, from, found_at, passed, err)
         else
           cycle
         end if
@@ -77,17 +82,71 @@ contains
     end subroutine keep
   end subroutine find_friction
 
-  !> Find the time at which the rate of a pair that slips vanishes.
-  subroutine find_rest(motion, i, from, rate, acceleration, t, passed, err)
+  !> Find the contact of links whose friction changes first, and the time.
+  subroutine find_rubbing(motion, from, y, rubbing, t, err)
+    type(integrated_motion_type), intent(inout) :: motion   !< the motion at the end of a step; its system may stand elsewhere
+    real(wp), intent(in) :: from                            !< start of the step [s]
+    real(wp), intent(in) :: y(:)                            !< the vector there
+    integer, intent(out) :: rubbing                         !< number of the contact; 0: none changes
+    real(wp), intent(out) :: t                              !< time of the change [s]
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    real(wp), dimension(size(motion%system%contact%acts), 2) :: rate, acceleration
+    real(wp) :: found_at
+    integer :: i
+    logical :: passed
+
+    rubbing = 0
+    t = motion%t
+    call motion%system%move_to(motion%t, motion%y, err)
+    if (allocated(err)) return
+    call keep(2)
+    call motion%system%move_to(from, y, err)
+    if (allocated(err)) return
+    call keep(1)
+    do i = 1, size(rate, 1)
+      associate (contact => motion%system%contact)
+        if (.not. (contact%acts(i) .and. motion%system%model%mechanism%contacts(i)%has_friction())) cycle
+        if (contact%sticks(i)) then
+          call find_slip(motion, of_rubbing, i, from, found_at, passed, err)
+        else
+          call find_rest(motion, of_rubbing, i, from, rate(i, :), acceleration(i, :), found_at, passed, err)
+        end if
+      end associate
+      if (allocated(err)) return
+      if (.not. passed) cycle
+      if (rubbing > 0 .and. abs(found_at - from) >= abs(t - from)) cycle
+      rubbing = i
+      t = found_at
+    end do
+  contains
+    !> Keep the slip in its direction at one end of the step.
+    subroutine keep(place)
+      integer, intent(in) :: place   !< 1: at the start, 2: at the end
+      type(contact_place_type) :: at
+      type(link_motion_type) :: ball, surface
+
+      do i = 1, size(rate, 1)
+        associate (contact => motion%system%model%mechanism%contacts(i), direction => motion%system%contact%direction(:, i))
+          call place_of_contact(contact, motion%system%plan, motion%system%state, at, ball, surface)
+          rate(i, place) = dot_product(direction, at%slip)
+          acceleration(i, place) = dot_product(direction, acceleration_of_contact(contact, motion%system%plan, motion%system%state))
+        end associate
+      end do
+    end subroutine keep
+  end subroutine find_rubbing
+
+  !> Find the time at which the rate of a pair or a contact that slips vanishes.
+  subroutine find_rest(motion, what, i, from, rate, acceleration, t, passed, err)
     type(integrated_motion_type), intent(inout) :: motion   !< the motion at the end of a step
-    integer, intent(in) :: i                                !< number of the friction
+    integer, intent(in) :: what                             !< of_friction, or of_rubbing for a contact of links
+    integer, intent(in) :: i                                !< number of the friction, or of the contact
     real(wp), intent(in) :: from                            !< start of the step [s]
     real(wp), intent(in) :: rate(2)                         !< at both ends of the step, in the direction of slip [rad/s, m/s]
     real(wp), intent(in) :: acceleration(2)                 !< there [rad/s^2, m/s^2]
     real(wp), intent(out) :: t                              !< the time [s]
     logical, intent(out) :: passed                          !< it lies within the step
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    real(wp) :: h, before, x, value, at, least, round_off
+    real(wp) :: h, before, x, value, at, least, round_off, size_of_position
     integer :: look
     logical :: leaves
 
@@ -100,9 +159,13 @@ contains
     ! a pair that turned back begins with what the error of the time has left of its rate
     leaves = rate(1) <= 0.0_wp .and. h*acceleration(1) > 0.0_wp
     ! rates within the step come from positions, whose round-off is large over a short step
-    associate (plan => motion%system%plan, k => motion%system%model%mechanism%frictions(i)%coordinate)
-      round_off = 16.0_wp*epsilon(h)*max(plan%unit_of(k), abs(motion%system%state%q(k)))/abs(h)
-    end associate
+    size_of_position = motion%system%plan%length
+    if (what == of_friction) then
+      associate (k => motion%system%model%mechanism%frictions(i)%coordinate)
+        size_of_position = max(motion%system%plan%unit_of(k), abs(motion%system%state%q(k)))
+      end associate
+    end if
+    round_off = 16.0_wp*epsilon(h)*size_of_position/abs(h)
     do look = 1, looks
       x = real(look, wp)/looks
       t = from + x*h
@@ -114,7 +177,7 @@ contains
         before = t
         cycle
       end if
-      call value_at(motion, of_friction, i, t, value, err)
+      call value_at(motion, what, i, t, value, err)
       if (allocated(err)) return
       leaves = leaves .and. value >= 0.0_wp
       passed = value > merge(0.0_wp, round_off, look == looks) .and. .not. leaves
@@ -122,14 +185,15 @@ contains
       before = t
     end do
     if (.not. passed) return
-    call find_before(motion, i, from, before, t, err)
-    if (.not. allocated(err)) call locate(motion, of_friction, i, before, t, passed, err)
+    call find_before(motion, what, i, from, before, t, err)
+    if (.not. allocated(err)) call locate(motion, what, i, before, t, passed, err)
   end subroutine find_rest
 
   !> Find a time at which a pair is in its present mode, before one at which it is not: a pair that just began to slip has no rate.
-  subroutine find_before(motion, i, from, before, t, err)
+  subroutine find_before(motion, what, i, from, before, t, err)
     type(integrated_motion_type), intent(inout) :: motion   !< the motion at the end of a step
-    integer, intent(in) :: i                                !< number of the friction
+    integer, intent(in) :: what                             !< of_friction, or of_rubbing for a contact of links
+    integer, intent(in) :: i                                !< number of the friction, or of the contact
     real(wp), intent(in) :: from                            !< start of the step [s]
     real(wp), intent(inout) :: before                       !< a time before [s]
     real(wp), intent(inout) :: t                            !< a time behind; perhaps an earlier one then [s]
@@ -141,7 +205,7 @@ contains
     before = t
     do halving = 1, most_halvings
       before = from + 0.5_wp*(before - from)
-      call value_at(motion, of_friction, i, before, value, err)
+      call value_at(motion, what, i, before, value, err)
       if (allocated(err) .or. value < 0.0_wp) return
       t = before
     end do
@@ -150,9 +214,10 @@ contains
 
   !> Find the time at which a pair that sticks is at its bound, or one at rest begins to move. Where the utilization does not change evenly,
   !> the step is looked at in more places.
-  subroutine find_slip(motion, i, from, t, passed, err)
+  subroutine find_slip(motion, what, i, from, t, passed, err)
     type(integrated_motion_type), intent(inout) :: motion   !< the motion at the end of a step
-    integer, intent(in) :: i                                !< number of the friction
+    integer, intent(in) :: what                             !< of_friction, or of_rubbing for a contact of links
+    integer, intent(in) :: i                                !< number of the friction, or of the contact
     real(wp), intent(in) :: from                            !< start of the step [s]
     real(wp), intent(out) :: t                              !< the time [s]
     logical, intent(out) :: passed                          !< it lies within the step
@@ -161,14 +226,14 @@ contains
 
     passed = .false.
     t = motion%t
-    call value_at(motion, of_friction, i, from, first, err)
-    if (.not. allocated(err)) call value_at(motion, of_friction, i, motion%t, last, err)
+    call value_at(motion, what, i, from, first, err)
+    if (.not. allocated(err)) call value_at(motion, what, i, motion%t, last, err)
     if (allocated(err)) return
     before = from
     call look_within(from, first, motion%t, last, 0)
     if (.not. passed .or. allocated(err)) return
-    call find_before(motion, i, from, before, t, err)
-    if (.not. allocated(err)) call locate(motion, of_friction, i, before, t, passed, err)
+    call find_before(motion, what, i, from, before, t, err)
+    if (.not. allocated(err)) call locate(motion, what, i, before, t, passed, err)
   contains
     !> Look for the first time between two ones at which the value is above zero.
     recursive subroutine look_within(a, value_a, b, value_b, depth)
@@ -184,7 +249,7 @@ contains
       values = -1.0_wp
       deviation = 0.0_wp
       do k = 1, 3
-        call value_at(motion, of_friction, i, times(k), values(k), err)
+        call value_at(motion, what, i, times(k), values(k), err)
         if (allocated(err)) return
         deviation = max(deviation, abs(values(k) - (value_a + looks_within(k)*(value_b - value_a))))
         if (values(k) > 0.0_wp) exit

@@ -8,8 +8,6 @@ module mech9_integrated_motion
   use mech9_simulation_failures, only: failure_angles_sensitivity, failure_many_events, failure_unheld_stop
   use mech9_variable_model, only: variable_model_type
   use mech9_partition, only: partition_type
-  use mech9_plan, only: copy_plan
-  use mech9_state, only: copy_state
   use mech9_block_solver, only: work_count_type, work_of
   use mech9_replanning, only: replanning_type, wanted_type
   use mech9_expectation, only: expectation_type
@@ -22,9 +20,11 @@ module mech9_integrated_motion
   use mech9_joint_passing, only: pass_law_joint => pass_joint
   use mech9_held_angles, only: copy_drives
   use mech9_ball_angles, only: ball_angles_type
+  use mech9_other_angles, only: take_angles
   use mech9_dense_output, only: dense_output_type
   use mech9_limit_watch, only: limit_watch_type
   use mech9_stop_contacts, only: stop_contacts_type
+  use mech9_contact_motion, only: note_slip
   use mech9_contact_events, only: meet_contacts, find_pressed
   use mech9_friction_events, only: choose_modes
   use mech9_held_coordinates, only: choose_held, hold_by_drives
@@ -241,7 +241,7 @@ contains
     angles = self%angles
     allocate (other)
     call other%make_room()
-    call take_angles(self, angles, other, failure)
+    call take_angles(self%system, self%angles, angles, other, failure)
     changed = .not. (gives_up(failure, err) .or. angles%move_as(self%angles))
     if (changed .and. allocated(self%system%sensitivity)) then
       call raise(err, exit_singular, failure_angles_sensitivity)
@@ -256,31 +256,6 @@ contains
     end if
   end subroutine change_angles
 
-  !> Make the system in the angles that serve best, at the present state.
-  subroutine take_angles(self, angles, other, failure)
-    class(integrated_motion_type), intent(in) :: self       !< the motion
-    type(ball_angles_type), intent(inout) :: angles         !< ball joints of the motion; then of the system
-    type(motion_system_type), intent(inout) :: other        !< gets the system
-    type(error_type), allocatable, intent(out) :: failure   !< allocated if these angles cannot serve
-
-    if (size(self%system%plan%closures) > 0) then
-      if (angles%in_use()) then
-        call copy_plan(angles%plan, other%plan)
-        call copy_state(angles%state, other%state)
-      else
-        call copy_plan(self%system%plan, other%plan)
-        call copy_state(self%system%state, other%state)
-      end if
-      call angles%restart(self%system%model, self%system%partition, other%plan, other%state, failure)
-    else
-      call angles%change(self%system%state, other%plan, other%state, failure)
-    end if
-    if (allocated(failure) .or. angles%move_as(self%angles)) return
-    call copy_drives(angles%held%drives, other%drives)
-    call self%system%hand_on_modes(other)
-    call set_motion_system(self%system%model, angles%held%partition, other, failure)
-  end subroutine take_angles
-
   !> Show the present state of the system in the angles of the data file, if others are integrated.
   subroutine show_angles(self, err)
     class(integrated_motion_type), intent(inout) :: self   !< the motion, with angles continued to the present state
@@ -293,6 +268,7 @@ contains
     if (self%angles%in_lock()) call find_third_derivatives(self%system, dddq, err)
     if (.not. allocated(err)) call self%angles%show(self%system%state, dddq, err)
     if (allocated(self%system%state%stop_force)) self%angles%state%stop_force = self%system%state%stop_force
+    if (allocated(self%system%contact)) self%angles%state%contact_force = self%system%state%contact_force
     if (allocated(self%system%state%friction)) then
       self%angles%state%friction = self%system%state%friction
       self%angles%state%heat = self%system%state%heat
@@ -396,10 +372,11 @@ contains
     class(impact_watcher_type), allocatable, intent(inout) :: impacts   !< gets the impulses of pairs; not allocated: they are not recorded
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     real(wp) :: of_held(self%system%plan%n_coordinates)
-    integer :: met, motor, friction
+    integer :: met, motor, friction, rubbing
 
     met = self%system%interval%contact
     friction = self%system%interval%friction
+    rubbing = self%system%interval%rubbing
     of_held = 0.0_wp
     if (self%system%interval%is_joint(self%t)) then
       call pass_law_joint(self%system, self%t, self%y, err, of_held)
@@ -409,18 +386,19 @@ contains
       call self%system%interval%forget_event()
       self%system%interval%motor = motor
     end if
-    if (met > 0 .or. self%contacts%any_held() .or. allocated(self%system%friction)) then
-      call self%meet_events(met, friction, of_held, .false., events, impacts, err)
+    if (met > 0 .or. rubbing > 0 .or. self%contacts%any_held() .or. allocated(self%system%friction)) then
+      call self%meet_events(met, friction, rubbing, of_held, .false., events, impacts, err)
     else
       call self%restart((self%t), (self%y), err)
     end if
   end subroutine pass_joint
 
   !> Meet the contacts of stops and the changes of frictions at the end of the last step, and go on as they leave the motion.
-  subroutine meet_events(self, met, friction, of_held, at_start, events, impacts, err)
+  subroutine meet_events(self, met, friction, rubbing, of_held, at_start, events, impacts, err)
     class(integrated_motion_type), intent(inout) :: self   !< the motion
     integer, intent(in) :: met                             !< number of the end that is met, left or released; 0: none
     integer, intent(in) :: friction                        !< number of the friction that changes; 0: none
+    integer, intent(in) :: rubbing                         !< number of the contact of links whose friction changes; 0: none
     real(wp), intent(in) :: of_held(:)                     !< (M) rates that held coordinates would have if nothing held them [rad/s, m/s]
     logical, intent(in) :: at_start                        !< there was no step yet
     type(motion_events_type), intent(inout) :: events      !< gets impacts, stops that close and open, and pairs that stick and slip
@@ -428,17 +406,19 @@ contains
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     real(wp), dimension(self%system%plan%n_coordinates) :: impulses, changes
     integer :: before
-    logical :: holds_change, stalls
+    logical :: holds_change, stalls, hits
 
     before = events%count
     self%system%interval%contact = 0
     self%system%interval%friction = 0
+    self%system%interval%rubbing = 0
     call self%system%move_to(self%t, self%y, err)
     if (allocated(err)) return
-    call meet_contacts(self%system, met, of_held, self%contacts, impulses, changes, holds_change, events, err)
+    call meet_contacts(self%system, met, rubbing, of_held, self%contacts, impulses, changes, holds_change, events, err)
     if (allocated(err)) return
-    if (allocated(impacts) .and. any(abs(impulses) > 0.0_wp) .and. &
-        (self%angles%give_same_wrenches() .or. .not. self%angles%in_use())) &
+    hits = any(abs(impulses) > 0.0_wp)
+    if (allocated(self%system%contact)) hits = hits .or. any(abs(self%system%state%contact_force) > 0.0_wp)
+    if (allocated(impacts) .and. hits .and. (self%angles%give_same_wrenches() .or. .not. self%angles%in_use())) &
       call impacts%take(self%system%plan, self%system%state, impulses, changes, err)
     if (allocated(err)) return
     if (allocated(self%system%friction)) call meet_frictions(self, met, friction, at_start, holds_change, events, err)
@@ -481,7 +461,8 @@ contains
       if (.not. allocated(err)) call find_pressed(self%system, self%contacts, met, pressed, err)
       if (allocated(err)) return
       if (.not. pressed .or. round == size(self%contacts%ends)) exit
-      call meet_contacts(self%system, 0, 0.0_wp*self%system%state%dq, self%contacts, impulses, changes, holds_change, events, err)
+      call meet_contacts(self%system, 0, 0, 0.0_wp*self%system%state%dq, self%contacts, impulses, changes, holds_change, events, &
+                         err)
       if (allocated(err)) return
     end do
     if (pressed) call raise(err, exit_integrator, failure_many_events)
@@ -519,7 +500,8 @@ contains
       if (allocated(err)) return
       call raise(err, exit_singular, failure_unheld_stop)
       err%failure%t = self%t
-      err%failure%coordinates = [pack(self%contacts%ends%coordinate, self%contacts%ends%held), sticking]
+      err%failure%coordinates = [pack(self%contacts%ends%coordinate, self%contacts%ends%held .and. self%contacts%ends%stop > 0), &
+                                 sticking]
     end if
   end subroutine hold_coordinates
 
@@ -529,7 +511,10 @@ contains
     type(error_type), allocatable, intent(out) :: err      !< allocated if the law of a motor has no value
 
     call self%limits%note(self%system, err)
-    if (size(self%contacts%ends) > 0) call self%contacts%note(self%system%state)
+    associate (system => self%system)
+      if (size(self%contacts%ends) > 0) call self%contacts%note(system%model%mechanism, system%plan, system%state)
+      if (allocated(system%contact)) call note_slip(system%model%mechanism, system%plan, system%state, system%contact)
+    end associate
   end subroutine note_start
 
   !> Go on from a state as if nothing had been before it.

@@ -33,7 +33,7 @@ module mech9_stopped_motion
   use mech9_held_rods, only: held_angle
   use mech9_rotation, only: cross
   use mech9_motion_coefficients, only: find_coefficients
-  use mech9_integration_failures, only: failure_no_friction
+  use mech9_integration_failures, only: failure_no_friction, failure_contact_paradox
   use mech9_friction_events, only: fail_in_paradox
   implicit none
   private
@@ -159,6 +159,10 @@ contains
     if (is_of_kind(failure, failure_no_friction)) then
       call system%move_to(t, y, err)
       if (.not. allocated(err)) call fail_in_paradox(system, failure)
+      return
+    end if
+    if (is_of_kind(failure, failure_contact_paradox)) then
+      failure%code = exit_singular
       return
     end if
     call name_dead_point(system, t, y, failure)

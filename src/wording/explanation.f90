@@ -34,6 +34,7 @@ module mech9_explanation
   use mech9_sensitivity_words, only: explain_sensitivity
   use mech9_stop_words, only: explain_stop_failure
   use mech9_friction_words, only: explain_friction_failure
+  use mech9_contact_words, only: explain_contact_failure
   use mech9_integration_words, only: explain_settings, explain_step, explain_stop
   implicit none
   private
@@ -74,6 +75,7 @@ contains
     call explain_sensitivity(failure, text)
     call explain_stop_failure(failure, text)
     call explain_friction_failure(failure, text)
+    call explain_contact_failure(failure, text)
   end subroutine explain_failure
 
   !> Chains that do not close or do not move, and independent coordinates that do not determine the others.

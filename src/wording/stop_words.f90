@@ -28,8 +28,8 @@ contains
              '/s. Change the drives, move the stop, or make it compliant by stiffness='
     case (failure_many_events)
       text = 'the motion makes no progress beyond t = '//to_text(failure%t, 10)//' s: it has had '//to_text(failure%limit)// &
-             ' events at stops and frictions. Give a smaller restitution, a compliant stop by stiffness=, or friction by '// &
-             'law=''smooth'''
+             ' events at stops, frictions and contacts. Give a smaller restitution, a compliant stop or contact by stiffness=, '// &
+             'or friction by law=''smooth'''
     case (failure_unheld_stop)
       text = 'the motion ends at t = '//to_text(failure%t, 10)//' s, because no independent coordinates serve while stops and '// &
              'frictions hold coordinates '//to_text(failure%coordinates)//'. Make one of these stops compliant by '// &

@@ -128,6 +128,7 @@ contains
       call draft%give('motor', 2, 'kind', '''pid''')
       call draft%give('stop', 1, 'coordinate', '1')
       call draft%give('friction', 1, 'coordinate', '1')
+      call draft%give('contact', 1, 'point', '''P''')
       if (drive /= 'user') call draft%give('motor', 1, 'law', ''''//drive//'''')
     end if
     ! drives and loads have the same laws of time

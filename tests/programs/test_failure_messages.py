@@ -13,6 +13,7 @@ import pytest
 
 from failures import kinds
 from free_delta import delta
+from contact_cases import DRIVEN_POINT, PRESSED_POINT, ROD, SLIDING_POINT, SUNK_POINT
 from friction_cases import FIVE_RUBBING, FOUR_RUBBING, LADDER, RUBBING, WEDGE
 from mech9_cases import TREE, run, text_of
 
@@ -37,6 +38,7 @@ UNREACHABLE = {
     'lost_inertia': 'only steps to positions beyond all sense lose it: tests/simulation/test_simulation.f90',
     'unheld_stop': 'closed stops are independent of each other, and are exchanged for what moves them most',
     'no_friction': 'where frictions have no solution, the paradox is told',
+    'contact_paradox': 'sliding contacts lift off or come to rest before: Genot and Brogliato 1999',
     'undecided_friction': 'accelerations have the directions of slip as long as frictions have one solution',
     'lost_angles': 'positions within a step that was made are always found',
     'not_started': 'the programs start each motion',
@@ -471,11 +473,25 @@ def free_cases():
         # at t = 1e6 s numbers are 1e-10 s apart, in which it would hit five times
         ('many_events', falling('low=-1e-11, high=1e-11, restitution=1', '&time start=1e6, end=1000001, intervals=1 /\n',
                                 start=initial(1, 0.0, ', velocity=1')), ('--set', 'gravity.acceleration=0,0,0'), INTEGRATOR,
-         ['the motion makes no progress beyond t = 1000000 s: it has had ', ' events at stops and frictions. Give a smaller '
-          "restitution, a compliant stop by stiffness=, or friction by law='smooth'"]),
+         ['the motion makes no progress beyond t = 1000000 s: it has had ', ' events at stops, frictions and contacts. Give a smaller '
+          "restitution, a compliant stop or contact by stiffness=, or friction by law='smooth'"]),
         ('friction_sensitivity', RUBBING + "&parameter name='m', sets='body(1).mass' /\n&output sensitivities=.true. /\n", (), DATA,
          ['derivatives by the parameters are not computed with friction, as of friction 1. Leave out the friction, the parameters, or '
           'sensitivities and gradients']),
+        ('contact_sensitivity', SLIDING_POINT + "&parameter name='m', sets='body(1).mass' /\n&output sensitivities=.true. /\n", (), DATA,
+         ['derivatives by the parameters are not computed with contacts of links, as contact 1. Leave out the contact, the parameters, or '
+          'sensitivities and gradients']),
+        ('contact_start', SUNK_POINT, (), DATA,
+         ['the links of contact 1 are 0.25 m within each other at the start. Start elsewhere, or move the surface']),
+        ('contact_violated', PRESSED_POINT, (), SINGULAR,
+         ['the drives press the links of contact 1 into each other from t = 0.5 s on; the gap has the rate -1 m/s. Change the drives, or '
+          'make the contact compliant by stiffness=']),
+        ('undecided_contact', ROD, (), SINGULAR,
+         ['the motion ends at t = 0 s: the forces of rigid contacts with friction have ', ' there, among them contact 1 (the paradox of '
+          'Painleve). Lower friction=, or make the contact compliant by stiffness=']),
+        ('contact_passed', DRIVEN_POINT, (), SINGULAR,
+         ['the links of contact 1 move into each other at t = 0.5 s: at t = ', ' s they would be ', ' m within each other. Change the '
+          'drives, or move the surface']),
         ('shared_bearing', FOUR_RUBBING, (), DATA,
          ['the friction of coordinate 1 depends on the component fz of the wrench of its pair, which equilibrium does not determine and '
           'which is not zero at t = 0 s. Leave this friction out, or give the joint more freedoms (--check names the components)']),

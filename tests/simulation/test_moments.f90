@@ -202,7 +202,7 @@ contains
     call interval%begin(model, 0.0_wp)
     call test%is_true(.not. interval%ends, 'there is no joint')
     call test%near(interval%time_inside(0.0_wp), 0.0_wp, 0.0_wp, 'all times stay')
-    call interval%end_at_event(1.5_wp, 2, 0, 0)
+    call interval%end_at_event(1.5_wp, 2, 0, 0, 0)
     call test%is_true(interval%is_end(1.5_wp) .and. interval%motor == 2, 'it ends where a motor passes its limit')
   end subroutine motor_limit
 

@@ -19,7 +19,7 @@ module test_explanation
   use mech9_sensitivity_failures, only: last_sensitivity_failure
   use mech9_force_gradient_failures, only: last_force_gradient_failure, failure_lost_inertia
   use mech9_integration_failures, only: last_integration_failure, failure_other_branch, failure_drive_jumps, &
-    failure_no_friction
+    failure_no_friction, failure_contact_paradox
   use mech9_event_failures, only: last_event_failure, failure_undecided_friction
   use mech9_simulation_failures, only: last_simulation_failure, failure_singular_start_block, failure_not_started, &
     failure_backwards, failure_interrupted, failure_lost_angles, failure_unheld_stop
@@ -362,6 +362,14 @@ contains
     call says(test, err, &
               'the frictions of coordinates 2, 4 have no solution at t = 0.25 s: they grow faster than what they resist. '// &
               'Lower the coefficients of friction')
+    call raise(err, exit_singular, failure_contact_paradox)
+    err%failure%number = 1
+    err%failure%values = reshape([1.5_wp, 1.25_wp], [1, 2])
+    err%failure%t = 0.25_wp
+    call says(test, err, &
+              'the friction of contact 1 has no solution from t = 0.25 s on (the paradox of Painleve): its coefficient is 1.5, '// &
+              'and from 1.25 on friction draws the links together faster than they are pressed apart. Lower friction=, or end '// &
+              'the motion before')
     call raise(err, exit_singular, failure_undecided_friction)
     err%failure%coordinates = [2, 4]
     err%failure%t = 0.25_wp

@@ -7,7 +7,8 @@ module mech9_explanations
   use mech9_name_explanation, only: explanation_type
   use mech9_mechanism_explanations, only: general_texts, coupling_texts, motion_texts
   use mech9_pair_explanations, only: pair_texts
-  use mech9_force_explanations, only: body_texts, load_texts, motor_texts, stop_texts, friction_texts
+  use mech9_force_explanations, only: body_texts, load_texts, motor_texts, stop_texts, friction_texts, &
+    contact_texts
   use mech9_run_explanations, only: cam_texts, study_texts, run_texts
   implicit none
   private
@@ -15,7 +16,7 @@ module mech9_explanations
 
   type(explanation_type), parameter :: explanations(*) = &
     [general_texts, pair_texts, coupling_texts, motion_texts, body_texts, load_texts, motor_texts, stop_texts, &
-     friction_texts, cam_texts, &
+     friction_texts, contact_texts, cam_texts, &
      study_texts,      run_texts]
 
 contains

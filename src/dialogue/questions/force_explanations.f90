@@ -3,7 +3,7 @@ module mech9_force_explanations
   use mech9_name_explanation, only: explanation_type
   implicit none
   private
-  public :: body_texts, load_texts, motor_texts, stop_texts, friction_texts
+  public :: body_texts, load_texts, motor_texts, stop_texts, friction_texts, contact_texts
 
   type(explanation_type), parameter :: body_texts(*) = [ &
     explanation_type('body', 'link', '', &
@@ -209,4 +209,35 @@ module mech9_force_explanations
                   'other programs.', 'coulomb'), &
     explanation_type('friction', 'transition', '', &
                   'By the smooth law the friction grows up to about this rate, above which it stays.', '0.01')]
+
+  type(explanation_type), parameter :: contact_texts(*) = [ &
+    explanation_type('contact', 'point', '', &
+                  'The name of a traced point that touches, or about which a ball does. Enter goes on without a further contact.', &
+                  'P'), &
+    explanation_type('contact', 'link', '', &
+                  'The number of the link with the surface: 1 for the frame.', '1'), &
+    explanation_type('contact', 'kind', '', &
+                  'The surface is a plane, or a sphere.', 'plane'), &
+    explanation_type('contact', 'origin', '', &
+                  'A point of the plane, or the centre of the sphere, in the system of its link.', '0 0 0'), &
+    explanation_type('contact', 'normal', '', &
+                  'The direction from the plane to its free side, in the axes of its link.', '0 0 1 (upwards)'), &
+    explanation_type('contact', 'radius', '', &
+                  'Of the ball about the point. Enter: the point itself touches.', '0.05'), &
+    explanation_type('contact', 'other_radius', '', &
+                  'Of the sphere that is the surface.', '0.1'), &
+    explanation_type('contact', 'restitution', '', &
+                  'After an impact the links part with this part of their rate: 0 lets them touch, 1 loses no energy.', '0.6'), &
+    explanation_type('contact', 'friction', '', &
+                  'While the contact slides, the friction is this part of the normal force. Enter: there is none.', '0.3'), &
+    explanation_type('contact', 'static_friction', '', &
+                  'At rest the friction holds up to this part of the normal force.', '0.4'), &
+    explanation_type('contact', 'stiffness', '', &
+                  'A contact with a stiffness gives way instead of being hit: its force grows with the penetration.', '1e5'), &
+    explanation_type('contact', 'damping', '', &
+                  'The force of a compliant contact grows by this for each m/s of penetration, times the penetration to '// &
+                  'the power of the exponent.', '200'), &
+    explanation_type('contact', 'exponent', '', &
+                  'The force of a compliant contact grows with this power of the penetration: 1 for springs, 1.5 for balls.', &
+                  '1.5')]
 end module mech9_force_explanations

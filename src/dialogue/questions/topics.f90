@@ -37,6 +37,8 @@ module mech9_topics
     topic_type('Friction', 'friction', 'Dry friction in pairs, by the forces that these pass on. '// &
                'A friction begun by mistake is left out by remove.'), &
     topic_type('Points', 'point', 'Positions, velocities and accelerations of these points are recorded.'), &
+    topic_type('Contacts', 'contact', 'A ball about a traced point may touch a plane or a sphere of another link. '// &
+               'A contact begun by mistake is left out by remove.'), &
     topic_type('Cams', 'cam', 'A cam whose profile follows from the motion of its follower, for the option --cam. '// &
                'A cam begun by mistake is left out by remove.'), &
     topic_type('Time', 'time', ''), &
@@ -94,8 +96,8 @@ contains
   pure logical function is_on_request(group_row)
     integer, intent(in) :: group_row  !< row of the group in group_table
 
-    is_on_request = any(group_table(group_row)%name == ['stop     ', 'friction ', 'parameter', 'quantity ', 'study    ', &
-                                                        'objective', 'limit    ', 'optimum  '])
+    is_on_request = any(group_table(group_row)%name == ['stop     ', 'friction ', 'contact  ', 'parameter', 'quantity ', &
+                                                        'study    ', 'objective', 'limit    ', 'optimum  '])
   end function is_on_request
 
   !> Whether the user begins the groups of a name, and can leave them out. There can be any number of most of them, and one of

@@ -39,6 +39,8 @@ module mech9_grammar
                    'one or two ends of the range of a coordinate, independent or not: rigid, with impacts, or compliant'), &
     group_row_type('friction', .true., '', for_forces, &
                    'dry friction in a turning, sliding or helical pair, by the force that the pair passes on'), &
+    group_row_type('contact', .true., '', both, &
+                   'a ball about a traced point, or the point, that may touch a plane or a ball of another link'), &
     group_row_type('cam', .true., '', kinematics, &
                    'a cam whose profile mech9k computes from the motion of its follower (option --cam)'), &
     group_row_type('parameter', .true., 'name', both, &
@@ -479,10 +481,38 @@ module mech9_grammar
     item_row_type('friction', 'transition', 'real', 1, 1, 'q/s', optional, '(none)', '>0', '', '', &
                   'of the smooth law: rate at which the friction has 76 % of its force', '0.01', seldom=.true.)]
 
+  type(item_row_type), parameter :: contact_items(*) = [ &
+    item_row_type('contact', 'point', 'text', 1, 1, '', needed, '', '', '', '', &
+                  'name of the &point that touches, or about which the ball is', '''P'''), &
+    item_row_type('contact', 'link', 'integer', 1, 1, '', optional, '1', '>=1', '', '', &
+                  'number of the link with the surface', '1'), &
+    item_row_type('contact', 'kind', 'text', 1, 1, '', optional, '''plane''', '', 'plane sphere', '', &
+                  'of the surface', '''plane'''), &
+    item_row_type('contact', 'origin', 'real', 3, 3, 'm', optional, '0, 0, 0', '', '', '', &
+                  'a point of the plane, or the centre of the sphere, in the system of its link', '0, 0, 0'), &
+    item_row_type('contact', 'normal', 'real', 3, 3, '', optional, '0, 0, 1', '', '', '', &
+                  'of the plane, towards its free side, in the axes of its link', '0, 0, 1'), &
+    item_row_type('contact', 'radius', 'real', 1, 1, 'm', optional, '0', '>=0', '', '', &
+                  'of the ball about the point; 0 for the point itself', '0.05'), &
+    item_row_type('contact', 'other_radius', 'real', 1, 1, 'm', optional, '0', '>=0', '', '', &
+                  'of the sphere that is the surface', '0.1', seldom=.true.), &
+    item_row_type('contact', 'restitution', 'real', 1, 1, '', optional, '0', '>=0', '', '', &
+                  'of a rigid contact: rate of the gap after an impact over the rate before it, from 0 to 1', '0.6'), &
+    item_row_type('contact', 'friction', 'real', 1, 1, '', optional, '0', '>=0', '', '', &
+                  'coefficient of friction while the contact slides', '0.3'), &
+    item_row_type('contact', 'static_friction', 'real', 1, 1, '', optional, '(friction)', '>=0', '', '', &
+                  'coefficient of friction at rest, not less than friction', '0.4', seldom=.true.), &
+    item_row_type('contact', 'stiffness', 'real', 1, 1, '', optional, '(rigid)', '>0', '', '', &
+                  'makes the contact compliant: force (N) = d^exponent (stiffness + damping dd/dt), penetration d in m', &
+                  '1e5', seldom=.true.), &
+    item_row_type('contact', 'damping', 'real', 1, 1, '', optional, '0', '>=0', '', '', &
+                  'of a compliant contact: force per rate of the penetration, at a penetration of 1 m', '200', seldom=.true.), &
+    item_row_type('contact', 'exponent', 'real', 1, 1, '', optional, '1', '>=1', '', '', &
+                  'of a compliant contact: power of the penetration; 1.5 for balls (Hertz)', '1.5', seldom=.true.)]
+
   type(item_row_type), parameter :: item_table(*) = &
     [general_items, pair_items, coupling_items, motion_items, body_items, load_items, motor_items, stop_items, friction_items, &
-     cam_items, &
-     study_items, run_items]
+     contact_items, cam_items, study_items, run_items]
 
 contains
 

@@ -32,6 +32,7 @@ module mech9_state
     logical, allocatable :: pressed(:, :)        !< (2,stops) ends of compliant stops that push; not allocated: their penetration tells
     real(wp), allocatable :: friction(:)         !< forces of frictions on their coordinates; not allocated: they are not known [N m, N]
     real(wp), allocatable :: heat(:)             !< energy that each friction has taken; not allocated: no pair has friction [J]
+    real(wp), allocatable :: contact_force(:, :) !< (3,contacts) forces on their balls, fixed axes; not allocated: not known [N]
     real(wp), allocatable :: curve(:, :)         !< (0:2,couplings) functions of couplings and their derivatives; not allocated:
                                                  !< all couplings are linear
     real(wp), allocatable :: angle(:)            !< (M) angle by which each step turns [rad]

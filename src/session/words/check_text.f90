@@ -12,6 +12,7 @@ module mech9_check_text
   use mech9_start_way_text, only: print_start_way
   use mech9_stop_text, only: print_stops
   use mech9_friction_text, only: print_frictions
+  use mech9_contact_text, only: print_contacts
   use mech9_force_text, only: print_uniqueness, print_forceless
   use mech9_force_record, only: force_record_type, reacting_pairs
   implicit none
@@ -52,6 +53,7 @@ contains
     end do
     call print_stops(unit, model%mechanism, start)
     call print_frictions(unit, model%mechanism)
+    call print_contacts(unit, model%mechanism, plan, start)
     call print_forces(unit, model, plan, start)
   end subroutine print_start
 

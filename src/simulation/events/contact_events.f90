@@ -1,4 +1,4 @@
-!> The events of contacts at one time: impacts, and which ends of stops are closed and hold their coordinates afterwards.
+!> The events of contacts at one time: impacts, which ends of stops are closed and hold their coordinates afterwards, and which links touch.
 !>
 !> A contact that falls back after each impact touches for good in finite time: with the rate u after an impact and the acceleration -a, the
 !> flights last 2u/a, e 2u/a, e^2 2u/a, ..., together 2u/(a (1 - e)).
@@ -6,12 +6,14 @@ module mech9_contact_events
   use mech9_kinds, only: wp
   use mech9_event_tolerances, only: touching, drawn_behind_stop, least_rebound, endless_part, pressing
   use mech9_error, only: error_type, raise, exit_data, exit_singular
-  use mech9_event_failures, only: failure_event_sensitivity, failure_stop_start
+  use mech9_event_failures, only: failure_event_sensitivity, failure_stop_start, failure_contact_start
   use mech9_result_units, only: unit_of, unit_name
-  use mech9_motion_event, only: motion_event_type, motion_events_type, event_impact, event_close, event_open
+  use mech9_motion_event, only: motion_event_type, motion_events_type, event_impact, event_close, event_open, event_lift, &
+    event_stick, event_slip
   use mech9_motion_system, only: motion_system_type
-  use mech9_stop_contacts, only: stop_contact_type, stop_contacts_type
-  use mech9_contact_equations, only: contact_equations_type, find_contact_equations, find_impact, find_pushing
+  use mech9_stop_contacts, only: stop_contact_type, stop_contacts_type, gap_motion, gap_acceleration
+  use mech9_contact_motion, only: correct_rates
+  use mech9_contact_equations, only: contact_equations_type, contact_outcome_type, find_contact_equations, find_impact, find_pushing
   implicit none
   private
   public :: begin_contacts, meet_contacts, find_pressed
@@ -23,30 +25,39 @@ contains
     class(motion_system_type), intent(inout) :: system     !< the system at the start; its state shows the ends that push
     type(stop_contacts_type), intent(inout) :: contacts    !< all ends, open
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    real(wp) :: motion(2)
     integer :: i
 
     do i = 1, size(contacts%ends)
-      associate (end => contacts%ends(i), q => system%state%q(contacts%ends(i)%coordinate))
-        if (end%gap(q) >= -drawn_behind_stop*system%plan%unit_of(end%coordinate)) cycle
+      associate (end => contacts%ends(i))
+        motion = gap_motion(system%model%mechanism, system%plan, system%state, end)
+        if (motion(1) >= -drawn_behind_stop*end%unit(system%plan)) cycle
         end%closed = .not. end%is_rigid
         if (end%closed) cycle
-        call raise(err, exit_data, failure_stop_start)
-        err%failure%number = end%stop
-        err%failure%coordinates = [end%coordinate]
-        err%failure%values = reshape([q, end%limit], [1, 2])/unit_of(system%model%mechanism, end%coordinate)
-        err%failure%name = trim(unit_name(system%model%mechanism, end%coordinate))
-        err%place = system%model%mechanism%stops(end%stop)%place
+        call raise(err, exit_data, merge(failure_stop_start, failure_contact_start, end%is_stop()))
+        err%failure%number = end%number()
+        if (end%is_stop()) then
+          err%failure%coordinates = [end%coordinate]
+          err%failure%values = reshape([system%state%q(end%coordinate), end%limit], [1, 2]) &
+                               /unit_of(system%model%mechanism, end%coordinate)
+          err%failure%name = trim(unit_name(system%model%mechanism, end%coordinate))
+          err%place = system%model%mechanism%stops(end%stop)%place
+        else
+          err%failure%values = reshape([motion(1)], [1, 1])
+          err%place = system%model%mechanism%contacts(end%contact)%place
+        end if
         return
       end associate
     end do
-    call contacts%show_pressed(system%state)
+    call contacts%show_pressed(system%state, system%contact)
   end subroutine begin_contacts
 
   !> Meet all contacts at the present state of the system, whose independent rates change at impacts. A compliant end that is met or left is
   !> noted alone. Fails where drives move a coordinate beyond its stop.
-  subroutine meet_contacts(system, met, of_held, contacts, impulses, changes, holds_change, events, err)
+  subroutine meet_contacts(system, met, rubbing, of_held, contacts, impulses, changes, holds_change, events, err)
     class(motion_system_type), intent(inout) :: system                     !< the system, moved to the time, with all rates
     integer, intent(in) :: met                                             !< number of the end that is met or left; 0: none
+    integer, intent(in) :: rubbing                 !< number of the contact of links that comes to rest or can stick no longer; 0: none
     real(wp), intent(in) :: of_held(:)                                     !< (M) rates that held coordinates would have if nothing held them
     type(stop_contacts_type), intent(inout) :: contacts                    !< all ends; those that are closed and held change
     real(wp), intent(out) :: impulses(:)                                   !< (M) on coordinates, positive while they grow [N m s, N s]
@@ -55,17 +66,22 @@ contains
     type(motion_events_type), intent(inout) :: events                      !< gets the events
     type(error_type), allocatable, intent(out) :: err                      !< allocated if it failed
     integer, allocatable :: touch(:)
-    real(wp), allocatable :: by_contact(:), ends_after(:)
-    logical, allocatable :: holds(:)
+    real(wp), allocatable :: by_contact(:, :), ends_after(:)
+    type(contact_outcome_type) :: outcome
     integer :: i
+    logical :: comes_to_rest
 
     holds_change = .false.
     impulses = 0.0_wp
     changes = 0.0_wp
-    if (met > 0) call pass_compliant_end(system%state%t, contacts%ends(met), events)
-    call contacts%show_pressed(system%state)
-    touch = pack([(i, i=1, size(contacts%ends))], [(touches(system, contacts%ends(i)) .or. i == met, i=1, size(contacts%ends))] &
-                 .and. contacts%ends%is_rigid)
+    if (met > 0) then
+      call pass_compliant_end(system%state%t, contacts%ends(met), events)
+      if (.not. (contacts%ends(met)%is_stop() .or. contacts%ends(met)%is_rigid)) &
+        system%contact%sticks(contacts%ends(met)%contact) = .false.
+    end if
+    call contacts%show_pressed(system%state, system%contact)
+    touch = pack([(i, i=1, size(contacts%ends))], [(touches(system, contacts%ends(i), i == met), i=1, size(contacts%ends))])
+    if (allocated(system%contact)) system%state%contact_force = 0.0_wp
     if (size(touch) == 0) then
       system%state%dq = system%state%dq + of_held
       return
@@ -74,25 +90,80 @@ contains
     if (allocated(err)) return
     changes = -system%state%dq
     system%state%dq = system%state%dq + of_held
-    call find_outcome(system, contacts, touch, met, by_contact, ends_after, holds, err)
+    comes_to_rest = .false.
+    if (rubbing > 0) comes_to_rest = .not. system%contact%sticks(rubbing)
+    if (comes_to_rest) call bring_to_rest(system, rubbing, err)
+    if (allocated(err)) return
+    call find_outcome(system, contacts, touch, met, merge(0, rubbing, comes_to_rest), by_contact, ends_after, outcome, err)
     if (allocated(err)) return
     changes = changes + system%state%dq
-    if (allocated(system%sensitivity) .and. (any(by_contact > 0.0_wp) .or. any(holds .neqv. contacts%ends(touch)%held))) then
+    if (allocated(system%sensitivity) .and. &
+        (any(by_contact > 0.0_wp) .or. any(outcome%holds .neqv. contacts%ends(touch)%held))) then
       call raise(err, exit_singular, failure_event_sensitivity)
       err%failure%t = system%state%t
-      err%failure%number = contacts%ends(touch(maxloc(by_contact, dim=1)))%stop
+      err%failure%number = contacts%ends(touch(maxloc(by_contact(1, :), dim=1)))%stop
       return
     end if
     do i = 1, size(touch)
       associate (end => contacts%ends(touch(i)))
-        holds_change = holds_change .or. (holds(i) .neqv. end%held)
-        impulses(end%coordinate) = impulses(end%coordinate) + end%direction*by_contact(i)
-        call note_events(system%state%t, end, by_contact(i), ends_after(i), holds(i), events)
-        end%closed = holds(i)
-        end%held = holds(i)
+        if (end%is_stop()) then
+          holds_change = holds_change .or. (outcome%holds(i) .neqv. end%held)
+          impulses(end%coordinate) = impulses(end%coordinate) + end%direction*by_contact(1, i)
+        end if
+        if (end%is_rigid) then
+          call note_events(system%state%t, end, by_contact(1, i), ends_after(i), outcome%holds(i), events)
+          end%closed = outcome%holds(i)
+          end%held = outcome%holds(i)
+        end if
+        if (.not. end%is_stop()) call take_friction(system, end, outcome%sticks(i), outcome%direction(:, i), events)
       end associate
     end do
+    call contacts%show_pressed(system%state, system%contact)
+    if (.not. allocated(system%contact)) return
+    call rest_exactly(system, err)
+    if (allocated(err)) return
+    ! impulses of pairs are those of contacts, too
+    system%state%contact_force = 0.0_wp
+    do i = 1, size(touch)
+      if (.not. contacts%ends(touch(i))%is_stop()) &
+        system%state%contact_force(:, contacts%ends(touch(i))%contact) = outcome%impulse(:, i)
+    end do
   end subroutine meet_contacts
+
+  !> Take from a contact of links that comes to rest the slip that errors of integration have left.
+  subroutine bring_to_rest(system, number, err)
+    class(motion_system_type), intent(inout) :: system     !< the system; its independent rates change
+    integer, intent(in) :: number                          !< of the contact
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+
+    system%contact%sticks(number) = .true.
+    call rest_exactly(system, err)
+    system%contact%sticks(number) = .false.
+  end subroutine bring_to_rest
+
+  !> Correct the independent rates by round-off, so that closed contacts of links have no rates.
+  subroutine rest_exactly(system, err)
+    class(motion_system_type), intent(inout) :: system     !< the system; its independent rates change
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+
+    call correct_rates(system%model%mechanism, system%plan, system%dynamics, system%state, system%work, system%contact, err)
+  end subroutine rest_exactly
+
+  !> Let a contact of links slide or stick from now on.
+  subroutine take_friction(system, end, sticks, direction, events)
+    class(motion_system_type), intent(inout) :: system         !< the system
+    type(stop_contact_type), intent(in) :: end                 !< the contact, closed or open as it is from now on
+    logical, intent(in) :: sticks                              !< friction holds it
+    real(wp), intent(in) :: direction(3)                       !< in which it slides, of length 1; fixed axes
+    type(motion_events_type), intent(inout) :: events          !< gets the event
+
+    associate (k => end%contact, contact => system%contact)
+      if (end%closed .and. (sticks .neqv. contact%sticks(k))) &
+        call events%add(motion_event_type(system%state%t, merge(event_stick, event_slip, sticks), 'contact', k))
+      contact%sticks(k) = sticks .and. end%closed
+      contact%direction(:, k) = direction
+    end associate
+  end subroutine take_friction
 
   !> Find whether frictions and loads press a contact that touches and rests, but does not hold its coordinate.
   subroutine find_pressed(system, contacts, met, pressed, err)
@@ -106,8 +177,8 @@ contains
     integer :: i
 
     pressed = .false.
-    touch = pack([(i, i=1, size(contacts%ends))], [(touches(system, contacts%ends(i)) .and. i /= met, i=1, size(contacts%ends))] &
-                 .and. contacts%ends%is_rigid .and. .not. contacts%ends%held)
+    touch = pack([(i, i=1, size(contacts%ends))], [(touches(system, contacts%ends(i), .false.) .and. i /= met, &
+                                                    i=1, size(contacts%ends))] .and. .not. contacts%ends%held)
     if (all(system%model%mechanism%frictions%is_smooth)) return
     if (size(touch) == 0) return
     call find_contact_equations(system, contacts%held_coordinates(system%plan%n_coordinates), contacts%ends(touch), equations, err)
@@ -116,19 +187,24 @@ contains
     do i = 1, size(touch)
       associate (end => contacts%ends(touch(i)))
         pressed = pressed .or. (abs(equations%rates(i)) <= equations%round_off(i) .and. .not. equations%g(i, i) <= 0.0_wp .and. &
-                                end%direction*system%state%ddq(end%coordinate) < -pressing*maxval(abs(system%state%ddq)))
+                                gap_acceleration(system%model%mechanism, system%plan, system%state, end) &
+                                < -pressing*maxval(abs(system%state%ddq)))
       end associate
     end do
   end subroutine find_pressed
 
-  !> Whether a rigid end touches.
-  pure logical function touches(system, end)
+  !> Whether a rigid end touches, or a compliant contact of links is pressed.
+  pure logical function touches(system, end, is_met)
     class(motion_system_type), intent(in) :: system   !< the system
     type(stop_contact_type), intent(in) :: end        !< the end
+    logical, intent(in) :: is_met                     !< it is met or left now
+    real(wp) :: motion(2)
 
-    touches = end%held
-    if (.not. touches) touches = end%gap(system%state%q(end%coordinate)) <= &
-                                 max(touching*system%plan%unit_of(end%coordinate), 4.0_wp*spacing(end%limit))
+    touches = end%held .or. (is_met .and. end%is_rigid)
+    if (.not. end%is_rigid) touches = end%closed .and. .not. end%is_stop()
+    if (touches .or. .not. end%is_rigid) return
+    motion = gap_motion(system%model%mechanism, system%plan, system%state, end)
+    touches = motion(1) <= max(touching*end%unit(system%plan), 4.0_wp*spacing(end%limit))
   end function touches
 
   !> Move the contacts that touch onto their ends, from which the integration leaves them a little: by the least motion, weighed by mass.
@@ -138,18 +214,18 @@ contains
     integer, intent(in) :: touch(:)                        !< numbers of the rigid ones that touch
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     type(contact_equations_type) :: equations
-    real(wp) :: gap, t, y(system%size_of_vector()), rates(size(system%plan%independent))
+    real(wp) :: motion(2), t, y(system%size_of_vector()), rates(size(system%plan%independent))
     integer :: i
 
-    if (all(contacts%ends(touch)%held)) return
+    if (all(contacts%ends(touch)%held .or. .not. contacts%ends(touch)%is_rigid)) return
     call find_contact_equations(system, contacts%held_coordinates(system%plan%n_coordinates), contacts%ends(touch), equations, err)
     if (allocated(err)) return
     associate (q => system%state%q, moved => system%plan%independent(equations%free))
       do i = 1, size(touch)
         associate (end => contacts%ends(touch(i)))
-          gap = end%gap(q(end%coordinate))
-          if (end%held .or. .not. equations%g(i, i) > 0.0_wp) cycle
-          q(moved) = q(moved) - gap/equations%g(i, i)*equations%answers(:, i)
+          if (end%held .or. .not. (equations%g(i, i) > 0.0_wp .and. end%is_rigid)) cycle
+          motion = gap_motion(system%model%mechanism, system%plan, system%state, end)
+          q(moved) = q(moved) - motion(1)/equations%g(i, i)*equations%answers(:, 1, i)
         end associate
       end do
     end associate
@@ -171,27 +247,37 @@ contains
 
     if (end%is_rigid) return
     end%closed = .not. end%closed
-    call events%add(motion_event_type(t, merge(event_close, event_open, end%closed), 'stop', end%stop))
+    call events%add(motion_event_type(t, event_of(end, end%closed), end%group(), end%number()))
   end subroutine pass_compliant_end
 
+  !> The kind of the event by which an end closes or opens.
+  pure character(len=6) function event_of(end, closes)
+    type(stop_contact_type), intent(in) :: end   !< the end
+    logical, intent(in) :: closes                !< it closes
+
+    event_of = event_close
+    if (.not. closes) event_of = merge(event_open, event_lift, end%is_stop())
+  end function event_of
+
   !> Find impulses and the contacts that push afterwards. Where endless impacts would end at once, they are left out.
-  subroutine find_outcome(system, contacts, touch, met, impulses, ends_after, holds, err)
+  subroutine find_outcome(system, contacts, touch, met, slides_on, impulses, ends_after, outcome, err)
     class(motion_system_type), intent(inout) :: system             !< the system; its independent rates change
     type(stop_contacts_type), intent(in) :: contacts               !< all ends
     integer, intent(in) :: touch(:)                                !< numbers of the rigid ones that touch
     integer, intent(in) :: met                                     !< number of the end that is met, or released if it is held; 0: none
-    real(wp), allocatable, intent(out) :: impulses(:)              !< (touch) of impacts [N m s, N s]
+    integer, intent(in) :: slides_on                               !< number of the contact of links that can stick no longer; 0: none
+    real(wp), allocatable, intent(out) :: impulses(:, :)           !< (3,touch) of impacts, along normal and tangents [N m s, N s]
     real(wp), allocatable, intent(out) :: ends_after(:)            !< (touch) time until endless impacts end; negative: there are none [s]
-    logical, allocatable, intent(out) :: holds(:)                  !< (touch) it pushes afterwards
+    type(contact_outcome_type), intent(out) :: outcome             !< gets modes and directions of the contacts
     type(error_type), allocatable, intent(out) :: err              !< allocated if it failed
-    type(contact_equations_type) :: equations
+    type(contact_equations_type) :: equations, after
     logical :: held(system%plan%n_coordinates)
-    real(wp), dimension(size(touch)) :: restitution, rates, accelerations
+    real(wp), dimension(size(touch)) :: restitution, rates
     real(wp) :: before(size(system%plan%independent)), duration, time, height
     integer :: i, round
     logical :: cut
 
-    allocate (impulses(size(touch)), holds(size(touch)))
+    allocate (impulses(3, size(touch)))
     allocate (ends_after(size(touch)), source=-1.0_wp)
     held = contacts%held_coordinates(size(held))
     duration = abs(system%model%request%time%end - system%model%request%time%start)
@@ -207,13 +293,13 @@ contains
         if (allocated(err)) return
         cut = .false.
         do i = 1, size(touch)
-          if (.not. (impulses(i) > 0.0_wp .and. rates(i) > 0.0_wp .and. accelerations(i) < 0.0_wp)) cycle
+          if (.not. (impulses(1, i) > 0.0_wp .and. rates(i) > 0.0_wp .and. outcome%accelerations(i) < 0.0_wp)) cycle
           if (restitution(i) >= 1.0_wp) cycle
-          time = 2.0_wp*rates(i)/(-accelerations(i)*(1.0_wp - restitution(i)))
-          height = -0.5_wp*rates(i)**2/accelerations(i)
+          time = 2.0_wp*rates(i)/(-outcome%accelerations(i)*(1.0_wp - restitution(i)))
+          height = -0.5_wp*rates(i)**2/outcome%accelerations(i)
           ! rebounds within the round-off of the coordinate are not impacts
           if (height > 64.0_wp*spacing(ends(i)%limit) .and. &
-              (height > least_rebound*system%plan%unit_of(ends(i)%coordinate) .or. time > endless_part*duration)) cycle
+              (height > least_rebound*ends(i)%unit(system%plan) .or. time > endless_part*duration)) cycle
           ends_after(i) = time
           restitution(i) = 0.0_wp
           cut = .true.
@@ -226,13 +312,27 @@ contains
     subroutine meet(err)
       type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
       logical :: at_rest(size(touch))
+      integer :: sliding
 
       call find_impact(system, contacts%ends(touch), equations, restitution, impulses, rates, err)
       if (allocated(err)) return
       at_rest = .not. abs(rates) > 0.0_wp
       ! the force of a released end passes zero: round-off must not close it again
-      if (.not. any(impulses > 0.0_wp)) at_rest = at_rest .and. .not. (touch == met .and. contacts%ends(touch)%held)
-      call find_pushing(system, contacts%ends(touch), equations, at_rest, accelerations, holds, err)
+      if (.not. any(impulses(1, :) > 0.0_wp)) at_rest = at_rest .and. .not. (touch == met .and. contacts%ends(touch)%held)
+      sliding = 0
+      if (slides_on > 0) sliding = findloc(contacts%ends(touch)%contact, slides_on, dim=1)
+      if (.not. equations%rubs .or. .not. any(abs(impulses) > 0.0_wp)) then
+        call find_pushing(system, contacts%ends(touch), equations, at_rest, sliding, outcome, err)
+      else
+        ! slips are others after an impact
+        call find_contact_equations(system, held, contacts%ends(touch), after, err)
+        if (.not. allocated(err)) &
+          call find_pushing(system, contacts%ends(touch), after, at_rest, sliding, outcome, err)
+      end if
+      if (allocated(err)) return
+      do i = 1, size(touch)
+        outcome%impulse(:, i) = matmul(equations%axes(:, :, i), impulses(:, i))
+      end do
     end subroutine meet
   end subroutine find_outcome
 
@@ -246,9 +346,9 @@ contains
     type(motion_events_type), intent(inout) :: events                  !< gets the events
 
     if (impulse > 0.0_wp .and. .not. ends_after >= 0.0_wp) &
-      call events%add(motion_event_type(t, event_impact, 'stop', end%stop, .true., end%direction*impulse))
+      call events%add(motion_event_type(t, event_impact, end%group(), end%number(), .true., end%direction*impulse))
     if (holds .and. .not. end%held) &
-      call events%add(motion_event_type(t + max(ends_after, 0.0_wp), event_close, 'stop', end%stop))
-    if (end%held .and. .not. holds) call events%add(motion_event_type(t, event_open, 'stop', end%stop))
+      call events%add(motion_event_type(t + max(ends_after, 0.0_wp), event_close, end%group(), end%number()))
+    if (end%held .and. .not. holds) call events%add(motion_event_type(t, event_of(end, .false.), end%group(), end%number()))
   end subroutine note_events
 end module mech9_contact_events

@@ -1,9 +1,10 @@
-!> Failures of events of a motion: what stops cannot do.
+!> Failures of events of a motion: what stops, frictions and contacts cannot do.
 module mech9_event_failures
   implicit none
   private
   public :: failure_stop_violated, failure_event_sensitivity, failure_stop_start, failure_singular_contact, &
-    failure_paradox, failure_shared_sticking, failure_undecided_friction, last_event_failure
+    failure_paradox, failure_shared_sticking, failure_undecided_friction, failure_contact_start, &
+    failure_contact_violated, failure_undecided_contact, last_event_failure
 
   !> Drives move or press a coordinate beyond a rigid stop: number (of the stop), coordinates, values (the limit, the rate), name (unit
   !> of the limit), t.
@@ -22,5 +23,11 @@ module mech9_event_failures
   integer, parameter :: failure_shared_sticking = 1406
   !> It was not found which pairs stick, and which slip: coordinates, t.
   integer, parameter :: failure_undecided_friction = 1407
-  integer, parameter :: last_event_failure = failure_undecided_friction
+  !> The start lies within a rigid contact: number (of the contact), values (the gap).
+  integer, parameter :: failure_contact_start = 1408
+  !> Drives press the links of a contact into each other: number (of the contact), values (the rate of the gap), t.
+  integer, parameter :: failure_contact_violated = 1409
+  !> Contacts with friction have no solution, or several: number (of one of them), limit (1: no solution, 2: several), t.
+  integer, parameter :: failure_undecided_contact = 1410
+  integer, parameter :: last_event_failure = failure_undecided_contact
 end module mech9_event_failures

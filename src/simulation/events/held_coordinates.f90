@@ -93,7 +93,7 @@ contains
 
     stays = .true.
     if (allocated(held)) stays = [(.not. any(held%coordinate == drives(i)%drive%coordinate), i=1, size(drives))]
-    allocate (now(count(contacts%ends%held) + size(sticking)))
+    allocate (now(count(contacts%ends%held .and. contacts%ends%stop > 0) + size(sticking)))
     allocate (others(count(stays) + size(now)))
     n = 0
     do i = 1, size(drives)
@@ -104,7 +104,7 @@ contains
     m = 0
     do i = 1, size(contacts%ends)
       associate (end => contacts%ends(i))
-        if (end%held) call hold(end%stop, end%coordinate, end%limit)
+        if (end%held .and. end%is_stop()) call hold(end%stop, end%coordinate, end%limit)
       end associate
     end do
     do i = 1, size(sticking)

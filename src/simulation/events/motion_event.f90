@@ -1,14 +1,14 @@
-!> Events of a motion that is not smooth: impacts on stops, stops that close and open, and pairs that stick and slip.
+!> Events of a motion that is not smooth: impacts, stops and contacts that close and open, and friction that sticks and slips.
 module mech9_motion_event
   use mech9_kinds, only: wp
   use mech9_event_tolerances, only: most_events, most_events_at_once
   implicit none
   private
-  public :: motion_event_type, motion_events_type, event_impact, event_close, event_open, event_stick, event_slip
+  public :: motion_event_type, motion_events_type, event_impact, event_close, event_open, event_stick, event_slip, event_lift
 
   !> Kinds of events, as they are written.
   character(len=*), parameter :: event_impact = 'impact', event_close = 'close ', event_open = 'open  ', &
-    event_stick = 'stick ', event_slip = 'slip  '
+    event_stick = 'stick ', event_slip = 'slip  ', event_lift = 'lift  '
 
   !> One event.
   type :: motion_event_type

@@ -1,35 +1,44 @@
-!> Ends of stops as contacts: the gap that is left to each, and whether it is closed.
+!> Ends of stops, and surfaces of links, as contacts: the gap that is left to each, and whether it is closed.
 !>
-!> A rigid end that is closed holds its coordinate like a drive that does not move, as long as its force pushes. A compliant end is a
-!> load; its contact begins and ends where its force is not smooth.
+!> A rigid end that is closed holds its coordinate like a drive that does not move, as long as its force pushes; a rigid contact of links has
+!> a force that leaves the gap no acceleration. A compliant one is a load; its contact begins and ends where its force is not smooth.
 module mech9_stop_contacts
   use mech9_kinds, only: wp
-  use mech9_stop, only: stop_type
+  use mech9_contact, only: contact_place_type
+  use mech9_motion_view, only: link_motion_type
+  use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
+  use mech9_contact_motion, only: contact_motion_type, place_of_contact, acceleration_of_contact
   implicit none
   private
-  public :: stop_contact_type, stop_contacts_type, find_contacts
+  public :: stop_contact_type, stop_contacts_type, find_contacts, gap_motion, gap_acceleration
 
-  !> One end of a stop.
+  !> One end of a stop, or one contact of links.
   type :: stop_contact_type
-    integer :: stop = 0                  !< number of the stop
-    integer :: coordinate = 0            !< number of its coordinate
+    integer :: stop = 0                  !< number of the stop; 0: links touch
+    integer :: coordinate = 0            !< number of its coordinate; 0: links touch
     integer :: direction = 1             !< of the force on the coordinate: 1 at the low end, -1 at the high one
     real(wp) :: limit = 0.0_wp           !< value of the coordinate at the end [rad, m]
     real(wp) :: restitution = 0.0_wp     !< of impacts
     logical :: is_rigid = .true.         !< it cannot be pressed in
     logical :: closed = .false.          !< a rigid end touches and pushes; a compliant one is pressed in
-    logical :: held = .false.            !< the coordinate is driven at the limit; a closed rigid end that is not is held by others
+    logical :: held = .false.            !< it has a force of its own: the coordinate is driven at the limit, or the gap has no acceleration;
+                                         !< a closed rigid one without this is held by others
+    integer :: contact = 0               !< number of the contact of links; 0: the end of a stop
   contains
     procedure :: gap
+    procedure :: is_stop
+    procedure :: group
+    procedure :: number
+    procedure :: unit
   end type stop_contact_type
 
   !> All ends of all stops, and their motion at the start of a step.
   type :: stop_contacts_type
     type(stop_contact_type), allocatable :: ends(:)
-    real(wp), allocatable :: q(:)        !< (ends) coordinates at the start of the step [rad, m]
-    real(wp), allocatable :: dq(:)       !< (ends) rates there, those of the last evaluation before it [rad/s, m/s]
+    real(wp), allocatable :: gap(:)      !< (ends) gaps at the start of the step [rad, m]
+    real(wp), allocatable :: rate(:)     !< (ends) their rates there, those of the last evaluation before it [rad/s, m/s]
     real(wp), allocatable :: force(:)    !< (ends) forces of those that are held there, positive while they push [N m, N]
     integer :: corrections = 0           !< how often the time of the event that lies ahead was corrected
   contains
@@ -53,58 +62,161 @@ contains
     gap = self%direction*(q - self%limit)
   end function gap
 
-  !> All ends of some stops, open.
-  pure subroutine find_contacts(stops, contacts)
-    type(stop_type), intent(in) :: stops(:)               !< the stops
-    type(stop_contacts_type), intent(out) :: contacts     !< their ends
-    integer :: i, end, n
+  !> Whether it is the end of a stop, and no contact of links.
+  pure logical function is_stop(self)
+    class(stop_contact_type), intent(in) :: self   !< the end
 
-    n = 0
-    do i = 1, size(stops)
-      n = n + count([(stops(i)%has_end(end), end=1, 2)])
+    is_stop = self%contact == 0
+  end function is_stop
+
+  !> The kind of its group in the data file.
+  pure character(len=8) function group(self)
+    class(stop_contact_type), intent(in) :: self   !< the end
+
+    group = merge('stop   ', 'contact', self%contact == 0)
+  end function group
+
+  !> The number of its group in the data file.
+  pure integer function number(self)
+    class(stop_contact_type), intent(in) :: self   !< the end
+
+    number = merge(self%stop, self%contact, self%contact == 0)
+  end function number
+
+  !> The unit in which its gap counts [rad, m].
+  pure real(wp) function unit(self, plan)
+    class(stop_contact_type), intent(in) :: self   !< the end
+    type(plan_type), intent(in) :: plan            !< the plan of the mechanism
+
+    unit = plan%length
+    if (self%contact == 0) unit = plan%unit_of(self%coordinate)
+  end function unit
+
+  !> The gap in a state, and its rate; that needs the velocities of links.
+  pure function gap_motion(mechanism, plan, state, end) result(motion)
+    type(mechanism_type), intent(in) :: mechanism    !< the mechanism
+    type(plan_type), intent(in) :: plan              !< its plan
+    type(state_type), intent(in) :: state            !< the state
+    type(stop_contact_type), intent(in) :: end       !< the end
+    real(wp) :: motion(2)
+    type(contact_place_type) :: place
+    type(link_motion_type) :: ball, surface
+
+    if (end%contact == 0) then
+      motion = [end%gap(state%q(end%coordinate)), end%direction*state%dq(end%coordinate)]
+    else
+      call place_of_contact(mechanism%contacts(end%contact), plan, state, place, ball, surface)
+      motion = [place%gap, place%gap_rate()]
+    end if
+  end function gap_motion
+
+  !> The second derivative of the gap in a state with all accelerations [rad/s^2, m/s^2].
+  pure real(wp) function gap_acceleration(mechanism, plan, state, end) result(acceleration)
+    type(mechanism_type), intent(in) :: mechanism    !< the mechanism
+    type(plan_type), intent(in) :: plan              !< its plan
+    type(state_type), intent(in) :: state            !< the state
+    type(stop_contact_type), intent(in) :: end       !< the end
+    type(contact_place_type) :: place
+    type(link_motion_type) :: ball, surface
+
+    if (end%contact == 0) then
+      acceleration = end%direction*state%ddq(end%coordinate)
+    else
+      associate (contact => mechanism%contacts(end%contact))
+        call place_of_contact(contact, plan, state, place, ball, surface)
+        acceleration = dot_product(place%normal, acceleration_of_contact(contact, plan, state))
+      end associate
+    end if
+  end function gap_acceleration
+
+  !> All ends of the stops and all contacts of links, open.
+  pure subroutine find_contacts(mechanism, contacts)
+    type(mechanism_type), intent(in) :: mechanism         !< the mechanism
+    type(stop_contacts_type), intent(out) :: contacts     !< the ends of its stops, and its contacts of links
+    integer :: i, end, n, n_links
+
+    n_links = 0
+    if (mechanism%has_contacts()) n_links = size(mechanism%contacts)
+    n = n_links
+    do i = 1, size(mechanism%stops)
+      n = n + count([(mechanism%stops(i)%has_end(end), end=1, 2)])
     end do
     allocate (contacts%ends(n))
-    allocate (contacts%q(n), contacts%dq(n), contacts%force(n), source=0.0_wp)
+    allocate (contacts%gap(n), contacts%rate(n), contacts%force(n), source=0.0_wp)
     n = 0
-    do i = 1, size(stops)
+    do i = 1, size(mechanism%stops)
       do end = 1, 2
-        if (.not. stops(i)%has_end(end)) cycle
+        if (.not. mechanism%stops(i)%has_end(end)) cycle
         n = n + 1
-        contacts%ends(n) = stop_contact_type(i, stops(i)%coordinate, 3 - 2*end, stops(i)%ends(end), stops(i)%restitution, &
-                                             stops(i)%is_rigid)
+        associate (stops => mechanism%stops)
+          contacts%ends(n) = stop_contact_type(i, stops(i)%coordinate, 3 - 2*end, stops(i)%ends(end), stops(i)%restitution, &
+                                               stops(i)%is_rigid)
+        end associate
       end do
+    end do
+    do i = 1, n_links
+      contacts%ends(n + i) = stop_contact_type(contact=i, restitution=mechanism%contacts(i)%restitution, &
+                                               is_rigid=mechanism%contacts(i)%is_rigid)
     end do
   end subroutine find_contacts
 
   !> Note the motion from which the next step begins.
-  pure subroutine note(self, state)
+  pure subroutine note(self, mechanism, plan, state)
     class(stop_contacts_type), intent(inout) :: self   !< the ends
+    type(mechanism_type), intent(in) :: mechanism      !< the mechanism
+    type(plan_type), intent(in) :: plan                !< its plan
     type(state_type), intent(in) :: state              !< the state there; rates of dependent coordinates may be a little older
+    real(wp) :: motion(2)
     integer :: i
 
     do i = 1, size(self%ends)
-      self%q(i) = state%q(self%ends(i)%coordinate)
-      self%dq(i) = state%dq(self%ends(i)%coordinate)
-      if (allocated(state%stop_force)) self%force(i) = self%ends(i)%direction*state%stop_force(self%ends(i)%stop)
+      motion = gap_motion(mechanism, plan, state, self%ends(i))
+      self%gap(i) = motion(1)
+      self%rate(i) = motion(2)
+      self%force(i) = pushing_force(mechanism, plan, state, self%ends(i))
     end do
   end subroutine note
 
-  !> Show a state which compliant ends push. Does nothing where there are none.
-  pure subroutine show_pressed(self, state)
-    class(stop_contacts_type), intent(in) :: self   !< the ends
-    type(state_type), intent(inout) :: state        !< gets them
-    integer :: i, n
+  !> The force of a rigid end in a state, positive while it pushes [N m, N].
+  pure real(wp) function pushing_force(mechanism, plan, state, end) result(force)
+    type(mechanism_type), intent(in) :: mechanism    !< the mechanism
+    type(plan_type), intent(in) :: plan              !< its plan
+    type(state_type), intent(in) :: state            !< the state, with the forces
+    type(stop_contact_type), intent(in) :: end       !< the end
+    type(contact_place_type) :: place
+    type(link_motion_type) :: ball, surface
 
-    if (count(.not. self%ends%is_rigid) == 0) return
-    n = self%ends(size(self%ends))%stop
-    if (.not. allocated(state%pressed)) allocate (state%pressed(2, n))
+    force = 0.0_wp
+    if (end%contact > 0) then
+      if (.not. allocated(state%contact_force)) return
+      call place_of_contact(mechanism%contacts(end%contact), plan, state, place, ball, surface)
+      force = dot_product(place%normal, state%contact_force(:, end%contact))
+    else if (allocated(state%stop_force)) then
+      force = end%direction*state%stop_force(end%stop)
+    end if
+  end function pushing_force
+
+  !> Show a state which compliant ends push, and the contacts of links which of them act. Does nothing where there are none.
+  pure subroutine show_pressed(self, state, contact)
+    class(stop_contacts_type), intent(in) :: self   !< the ends
+    type(state_type), intent(inout) :: state        !< gets compliant ends
+    class(contact_motion_type), allocatable, intent(inout) :: contact   !< contacts of links; not allocated: there are none
+    integer :: i
+
+    do i = 1, size(self%ends)
+      if (self%ends(i)%contact > 0) contact%acts(self%ends(i)%contact) = &
+        merge(self%ends(i)%held, self%ends(i)%closed, self%ends(i)%is_rigid)
+    end do
+    if (count(.not. self%ends%is_rigid .and. self%ends%contact == 0) == 0) return
+    if (.not. allocated(state%pressed)) allocate (state%pressed(2, maxval(self%ends%stop)))
     state%pressed = .false.
     do i = 1, size(self%ends)
+      if (self%ends(i)%contact > 0) cycle
       if (self%ends(i)%closed) state%pressed((3 - self%ends(i)%direction)/2, self%ends(i)%stop) = .not. self%ends(i)%is_rigid
     end do
   end subroutine show_pressed
 
-  !> Whether any end holds its coordinate.
+  !> Whether any rigid end has a force of its own.
   pure logical function any_held(self)
     class(stop_contacts_type), intent(in) :: self   !< the ends
 
@@ -120,28 +232,29 @@ contains
 
     held = .false.
     do i = 1, size(self%ends)
-      if (self%ends(i)%held) held(self%ends(i)%coordinate) = .true.
+      if (self%ends(i)%held .and. self%ends(i)%contact == 0) held(self%ends(i)%coordinate) = .true.
     end do
   end function held_coordinates
 
   !> Whether any end that is not held may have been passed within a step. The answer costs no evaluation.
-  pure logical function in_doubt(self, plan, state, h)
+  pure logical function in_doubt(self, mechanism, plan, state, h)
     class(stop_contacts_type), intent(in) :: self   !< the ends, with the motion at the start of the step
-    type(plan_type), intent(in) :: plan             !< the plan of the mechanism
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan             !< its plan
     type(state_type), intent(in) :: state           !< positions at the end of the step, with the rates of the last evaluation
     real(wp), intent(in) :: h                       !< length of the step, with its sign [s]
-    real(wp) :: values(4)
+    real(wp) :: values(4), now(2)
     integer :: i
 
     in_doubt = .true.
     do i = 1, size(self%ends)
-      associate (end => self%ends(i), k => self%ends(i)%coordinate)
+      associate (end => self%ends(i))
         if (end%held) cycle
         ! the polynomial at the ends of the step and where its control points lie: it does not leave their hull
-        values = end%direction*([self%q(i), self%q(i) + h*self%dq(i)/3.0_wp, state%q(k) - h*state%dq(k)/3.0_wp, state%q(k)] &
-                                - end%limit)
+        now = gap_motion(mechanism, plan, state, end)
+        values = [self%gap(i), self%gap(i) + h*self%rate(i)/3.0_wp, now(1) - h*now(2)/3.0_wp, now(1)]
         if (end%closed) values = -values
-        if (minval(values) < doubtful_part*(maxval(values) - minval(values)) + 1.0e-9_wp*plan%unit_of(k)) return
+        if (minval(values) < doubtful_part*(maxval(values) - minval(values)) + 1.0e-9_wp*end%unit(plan)) return
       end associate
     end do
     in_doubt = .false.

@@ -3,7 +3,7 @@ module mech9_integration_failures
   implicit none
   private
   public :: failure_singular_step, failure_unclosed_step, failure_other_branch, failure_drive_jumps, &
-    failure_jump_sensitivity, failure_no_friction, last_integration_failure
+    failure_jump_sensitivity, failure_no_friction, failure_contact_paradox, last_integration_failure
 
   !> A position inside a step is too near to a singular one for the independent coordinates.
   integer, parameter :: failure_singular_step = 1301
@@ -17,5 +17,8 @@ module mech9_integration_failures
   integer, parameter :: failure_jump_sensitivity = 1305
   !> Frictions have no solution, or it was not found: coordinates, t.
   integer, parameter :: failure_no_friction = 1306
-  integer, parameter :: last_integration_failure = failure_no_friction
+  !> Friction draws a contact together that slides, so that its force has no solution: number (of the contact), values (its coefficient, the
+  !> least one at which this is so), t.
+  integer, parameter :: failure_contact_paradox = 1307
+  integer, parameter :: last_integration_failure = failure_contact_paradox
 end module mech9_integration_failures

@@ -6,7 +6,7 @@ module mech9_integration_tolerances
   implicit none
   private
   public :: trusted_closing, trusted_between_steps, worthwhile_improvement, short_way, round_off_of_jumps, &
-    steepest_slope, third_derivative_step
+    steepest_slope, third_derivative_step, slip_of_round_off
 
   ! Closed chains.
 
@@ -38,4 +38,9 @@ module mech9_integration_tolerances
   !> Distance in time of two evaluations whose difference gives third derivatives, over the time that the motion takes for
   !> 1 rad: the square of this and round-off over it are both the error, about 1e-10.
   real(wp), parameter :: third_derivative_step = 1.0e-5_wp
+
+  ! Contacts.
+
+  !> Slip of a contact is round-off below this part of the speeds from which it comes: corrections leave 1e-15 of them.
+  real(wp), parameter :: slip_of_round_off = 1.0e-12_wp
 end module mech9_integration_tolerances

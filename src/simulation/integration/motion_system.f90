@@ -33,6 +33,7 @@ module mech9_motion_system
   use mech9_smooth_interval, only: smooth_interval_type
   use mech9_stop_forces, only: held_coordinate_type, find_stop_forces
   use mech9_friction_motion, only: friction_motion_type, begin_frictions, prepare_frictions, find_frictions, find_heat_rates
+  use mech9_contact_motion, only: contact_motion_type, begin_contact_motion, find_contact_motion, correct_positions, correct_rates
   use mech9_variable_model, only: variable_model_type
   use mech9_motion_sensitivity, only: motion_sensitivity_type, new_motion_sensitivity
   implicit none
@@ -57,6 +58,7 @@ module mech9_motion_system
     type(smooth_interval_type) :: interval           !< in which the present steps lie
     type(held_coordinate_type), allocatable :: held(:)          !< coordinates that stops or friction hold; not allocated: none
     class(friction_motion_type), allocatable :: friction        !< frictions of pairs; not allocated: there are none
+    class(contact_motion_type), allocatable :: contact          !< contacts of links; not allocated: there are none
     type(motion_sensitivity_type), allocatable :: sensitivity   !< derivatives by parameters, where they are integrated, too
   contains
     procedure :: make_room
@@ -119,6 +121,14 @@ contains
       call begin_frictions(model%mechanism, system%state, system%friction)
       call prepare_frictions(model%mechanism, system%plan, system%state, system%friction)
     end if
+    if (model%mechanism%has_contacts()) then
+      if (.not. allocated(system%contact)) then
+        allocate (system%contact)
+        call begin_contact_motion(model%mechanism, system%contact)
+      end if
+      if (.not. allocated(system%state%contact_force)) &
+        allocate (system%state%contact_force(3, size(model%mechanism%contacts)), source=0.0_wp)
+    end if
     call system%interval%begin(model, system%state%t)
     ! reports show the coefficients of the start; articulated bodies do without
     if (system%dynamics%articulated) &
@@ -156,15 +166,20 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     logical, intent(in), optional :: with_sticking      !< frictions of pairs that stick are found, too; not unless given
     integer :: k
-    logical :: rubs
+    logical :: rubs, touches
 
+    touches = .false.
+    if (allocated(self%contact)) touches = self%contact%any_acts()
     rubs = .false.
     if (allocated(self%friction)) rubs = present(with_sticking) .or. self%friction%modes%any_slips() .or. &
                                          any(self%model%mechanism%frictions%is_smooth)
     if (rubs) then
       call find_frictions(self%model%mechanism, self%plan, self%dynamics, self%state, self%work, self%friction, err)
+    else if (touches) then
+      call find_contact_motion(self%model%mechanism, self%plan, self%dynamics, self%state, self%work, self%contact, err)
     else
       if (allocated(self%friction)) self%state%friction = 0.0_wp
+      if (allocated(self%contact)) self%state%contact_force = 0.0_wp
       call find_motion(self%model%mechanism, self%plan, self%dynamics, self%state, self%work, err)
     end if
     if (.not. (allocated(err) .and. self%has_inertia)) return
@@ -196,6 +211,7 @@ contains
     class(motion_system_type), intent(inout) :: other    !< the other one, before it is set
 
     if (allocated(self%held)) other%held = self%held
+    if (allocated(self%contact)) allocate (other%contact, source=self%contact)
     if (.not. allocated(self%friction)) return
     allocate (other%friction)
     other%friction%modes = self%friction%modes
@@ -203,12 +219,13 @@ contains
     other%friction%wrenches%unique = self%friction%wrenches%unique
   end subroutine hand_on_modes
 
-  !> Whether drives hold coordinates in place of pairs that stick.
+  !> Whether pairs stick, whose coordinates drives hold, or contacts.
   pure logical function any_sticks(self)
     class(motion_system_type), intent(in) :: self        !< the system
 
     any_sticks = .false.
     if (allocated(self%friction)) any_sticks = size(self%friction%held) > 0
+    if (allocated(self%contact)) any_sticks = any_sticks .or. self%contact%any_sticks()
   end function any_sticks
 
   !> Length of the vector that is integrated.
@@ -393,6 +410,8 @@ contains
       err%failure%t = t
       return
     end if
+    call close_contacts(self, trusted_closing, failed, err)
+    if (allocated(err)) return
     call pack_state(self%plan, self%state, y)
     self%just_projected = .true.
   end subroutine project
@@ -417,6 +436,28 @@ contains
     failed = 0
   end subroutine close_chains
 
+  !> Take the errors of integration from the gaps and the slips of contacts that are closed, in the present state with closed chains.
+  subroutine close_contacts(self, trusted, failed, err)
+    class(motion_system_type), intent(inout) :: self    !< the motion system
+    real(wp), intent(in) :: trusted                     !< change of a coordinate by which chains are closed, in its unit
+    integer, intent(out) :: failed                      !< number of the block that does not close; 0: none
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    integer, parameter :: most_corrections = 6
+    integer :: correction
+    logical :: corrected
+
+    failed = 0
+    if (.not. allocated(self%contact)) return
+    do correction = 1, most_corrections
+      call correct_positions(self%model%mechanism, self%plan, self%dynamics, self%state, self%work, self%contact, corrected, err)
+      if (allocated(err) .or. .not. corrected) exit
+      call close_chains(self, trusted, failed, err)
+      if (allocated(err) .or. failed > 0) return
+    end do
+    if (allocated(err)) return
+    call correct_rates(self%model%mechanism, self%plan, self%dynamics, self%state, self%work, self%contact, err)
+  end subroutine close_contacts
+
   !> Find a state within a step, with its rates and accelerations: the chains are closed from the vector y, an approximation.
   !> `ok` is false where they are not certain to close on the same branch.
   subroutine close_near(self, t, y, ok, err)
@@ -431,6 +472,8 @@ contains
     call take_vector(self, t, y, err)
     if (allocated(err)) return
     call close_chains(self, trusted_between_steps, failed, err)
+    if (allocated(err) .or. failed > 0) return
+    call close_contacts(self, trusted_between_steps, failed, err)
     if (allocated(err) .or. failed > 0) return
     call self%present(err)
     self%state%t = t

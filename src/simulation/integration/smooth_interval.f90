@@ -21,6 +21,7 @@ module mech9_smooth_interval
     real(wp) :: joint = 0.0_wp    !< the next joint of the laws of time; the largest number, with the direction's sign, if none comes [s]
     integer :: contact = 0        !< number of the end of a stop that is met or left at the end; 0: none is
     integer :: friction = 0       !< number of the friction whose pair comes to rest or begins to slip at the end; 0: none does
+    integer :: rubbing = 0        !< number of the contact of links that comes to rest or begins to slide at the end; 0: none does
   contains
     procedure :: begin
     procedure :: time_inside
@@ -105,26 +106,28 @@ contains
     is_before_end = 0.5_wp*(from_inside(t, direction) - t)*direction <= (self%ahead - t)*direction
   end function is_before_end
 
-  !> End the interval where a motor passes its limit, an end of a stop is met or left, or friction changes.
-  pure subroutine end_at_event(self, t, motor, contact, friction)
+  !> End the interval where a motor passes its limit, a contact is met or left, or friction of a pair or of a contact changes.
+  pure subroutine end_at_event(self, t, motor, contact, friction, rubbing)
     class(smooth_interval_type), intent(inout) :: self   !< the interval
     real(wp), intent(in) :: t                            !< time of the event, ahead [s]
     integer, intent(in) :: motor                         !< number of the motor; 0: none
     integer, intent(in) :: contact                       !< number of the end; 0: none
     integer, intent(in) :: friction                      !< number of the friction; 0: none
+    integer, intent(in) :: rubbing                       !< number of the contact of links with friction; 0: none
 
     self%ends = .true.
     self%ahead = t
     self%motor = motor
     self%contact = contact
     self%friction = friction
+    self%rubbing = rubbing
   end subroutine end_at_event
 
   !> Whether an event ends the interval, and not a joint of the laws alone.
   pure logical function ends_at_event(self)
     class(smooth_interval_type), intent(in) :: self   !< the interval
 
-    ends_at_event = self%motor > 0 .or. self%contact > 0 .or. self%friction > 0
+    ends_at_event = self%motor > 0 .or. self%contact > 0 .or. self%friction > 0 .or. self%rubbing > 0
   end function ends_at_event
 
   !> Whether a joint of the laws lies at a time.
@@ -144,5 +147,6 @@ contains
     self%motor = 0
     self%contact = 0
     self%friction = 0
+    self%rubbing = 0
   end subroutine forget_event
 end module mech9_smooth_interval

@@ -3,7 +3,8 @@ module test_draft_needs
   use mech9_program_kind, only: kinematics, dynamics
   use mech9_draft, only: draft_type
   use mech9_explanations, only: explanations
-  use mech9_force_explanations, only: body_texts, load_texts, motor_texts, stop_texts, friction_texts
+  use mech9_force_explanations, only: body_texts, load_texts, motor_texts, stop_texts, friction_texts, &
+    contact_texts
   use mech9_grammar, only: group_table, item_table, find_group_row
   use mech9_mechanism_explanations, only: general_texts, coupling_texts, motion_texts
   use mech9_name_explanation, only: explanation_type
@@ -85,7 +86,7 @@ contains
 
     call tester%is_true(size(general_texts) + size(coupling_texts) + size(motion_texts) + size(pair_texts) + size(body_texts) + &
                         size(load_texts) + size(motor_texts) + size(stop_texts) + &
-                        size(friction_texts) + size(cam_texts) + size(study_texts) + size(run_texts) == &
+                        size(friction_texts) + size(contact_texts) + size(cam_texts) + size(study_texts) + size(run_texts) == &
                         size(explanations), 'the parts are the whole')
     call tester%is_true(all(pair_texts%group == 'pair') .and. all(coupling_texts%group == 'coupling') .and. &
                         all(cam_texts%group == 'cam') .and. all(motor_texts%group == 'motor') .and. &

@@ -1,0 +1,474 @@
+!> Contacts in a motion: where they are, the forces of those that are closed, and the accelerations under these forces.
+!>
+!> A rigid contact that is closed has a force that leaves the gap no acceleration; one that sticks has tangential forces that leave the slip
+!> none. With the rows J of the independent coordinates for the normal and the tangents of each contact, these accelerations are
+!> J M^-1 J^T f + J M^-1 (Q - h) + those that rates alone give. Friction of a contact that slides is the coefficient times the normal
+!> force, against the slip. Positions and rates are corrected after each step, by the least change weighed by mass, since integration
+!> of accelerations alone would let them drift.
+module mech9_contact_motion
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, exit_data, exit_integrator
+  use mech9_dynamics_failures, only: failure_no_inertia
+  use mech9_integration_failures, only: failure_contact_paradox
+  use mech9_integration_tolerances, only: slip_of_round_off
+  use mech9_rotation, only: cross
+  use mech9_cholesky, only: cholesky_factorize, cholesky_solve
+  use mech9_friction_cones, only: solve_least
+  use mech9_motion_view, only: link_motion_type
+  use mech9_contact, only: contact_type, contact_place_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_frame_motion, only: link_motion, link_turning, point_motion, step_screw
+  use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type
+  use mech9_jacobian, only: rates_by_independent
+  use mech9_lagrange, only: find_equations
+  implicit none
+  private
+  public :: contact_motion_type, contact_rows_type, begin_contact_motion, find_contact_motion, find_contact_rows, &
+    place_of_contact, acceleration_of_contact, correct_positions, correct_rates, note_slip
+
+  !> The equations of some contacts in the coordinates that move.
+  type :: contact_rows_type
+    integer, allocatable :: moving(:)              !< places among the independent coordinates of those that move
+    real(wp), allocatable :: factors(:, :)         !< Cholesky factors of their mass matrix
+    type(contact_place_type), allocatable :: places(:)   !< (contacts)
+    real(wp), allocatable :: axes(:, :, :)         !< (3,3,contacts) normal and two tangents of each, fixed axes
+    real(wp), allocatable :: rows(:, :, :)         !< (moving,3,contacts) slip along these axes per rate
+    real(wp), allocatable :: answers(:, :, :)      !< (moving,3,contacts) accelerations by unit forces along them
+  end type contact_rows_type
+
+  !> How contacts act in a motion.
+  type :: contact_motion_type
+    logical, allocatable :: acts(:)                !< (contacts) a rigid one is closed, or a compliant one pressed
+    logical, allocatable :: sticks(:)              !< (contacts) friction holds it
+    real(wp), allocatable :: direction(:, :)       !< (3,contacts) in which it slid last, of length 1; fixed axes
+    real(wp), allocatable :: forces(:, :)          !< (3,contacts) along the normal and two tangents [N]
+  contains
+    procedure :: any_acts
+    procedure :: any_sticks
+    procedure :: excess
+  end type contact_motion_type
+
+  !> Gaps count as closed up to this part of the mechanism's length: some times the round-off of positions.
+  real(wp), parameter :: closed_part = 4.0_wp*epsilon(1.0_wp)
+
+contains
+
+  !> Whether any contact acts.
+  pure logical function any_acts(self)
+    class(contact_motion_type), intent(in) :: self   !< the contacts
+
+    any_acts = any(self%acts)
+  end function any_acts
+
+  !> Whether any contact sticks.
+  pure logical function any_sticks(self)
+    class(contact_motion_type), intent(in) :: self   !< the contacts
+
+    any_sticks = any(self%acts .and. self%sticks)
+  end function any_sticks
+
+  !> How far the friction that a sticking contact needs is beyond what it has, in parts of its force: above zero where it should slide.
+  pure real(wp) function excess(self, contact, i)
+    class(contact_motion_type), intent(in) :: self   !< the contacts, with their forces
+    type(contact_type), intent(in) :: contact        !< the contact
+    integer, intent(in) :: i                         !< its number
+
+    associate (f => self%forces(:, i))
+      excess = (norm2(f(2:3)) - contact%static_friction*f(1))/max(norm2(f), tiny(1.0_wp))
+    end associate
+  end function excess
+
+  !> Begin with open contacts.
+  pure subroutine begin_contact_motion(mechanism, self)
+    type(mechanism_type), intent(in) :: mechanism          !< the mechanism
+    type(contact_motion_type), intent(inout) :: self       !< the contacts
+
+    associate (n => size(mechanism%contacts))
+      allocate (self%acts(n), self%sticks(n), source=.false.)
+      allocate (self%direction(3, n), self%forces(3, n), source=0.0_wp)
+    end associate
+  end subroutine begin_contact_motion
+
+  !> The place of a contact in a state with the velocities of its links.
+  pure subroutine place_of_contact(contact, plan, state, place, ball, surface)
+    type(contact_type), intent(in) :: contact             !< the contact
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    type(state_type), intent(in) :: state                 !< the state
+    type(contact_place_type), intent(out) :: place        !< its place
+    type(link_motion_type), intent(out) :: ball           !< motion of the ball's link
+    type(link_motion_type), intent(out) :: surface        !< motion of the surface's link
+
+    call link_motion(plan, state, contact%links(1), ball%r, ball%p, ball%omega, ball%v)
+    call link_motion(plan, state, contact%links(2), surface%r, surface%p, surface%omega, surface%v)
+    place = contact%find_place(ball, surface)
+  end subroutine place_of_contact
+
+  !> The derivative of the slip of a contact in a state with the accelerations of its links, fixed axes [m/s^2].
+  pure function acceleration_of_contact(contact, plan, state) result(acceleration)
+    type(contact_type), intent(in) :: contact             !< the contact
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    type(state_type), intent(in) :: state                 !< the state
+    type(contact_place_type) :: place
+    type(link_motion_type) :: ball, surface
+    real(wp), dimension(3) :: acceleration, at, v, a_center, a_surface, alpha_ball, alpha_surface
+
+    call place_of_contact(contact, plan, state, place, ball, surface)
+    call point_motion(plan, state, contact%links(1), contact%center, at, v, a_center)
+    call point_motion(plan, state, contact%links(2), [0.0_wp, 0.0_wp, 0.0_wp], at, v, a_surface)
+    call link_turning(plan, state, contact%links(1), alpha_ball)
+    call link_turning(plan, state, contact%links(2), alpha_surface)
+    acceleration = contact%acceleration(place, ball, surface, a_center, alpha_ball, a_surface, alpha_surface)
+  end function acceleration_of_contact
+
+  !> Find the equations of some contacts, in a state whose equations of motion are found.
+  subroutine find_contact_rows(mechanism, numbers, plan, dynamics, state, work, moves, equations, err)
+    type(mechanism_type), intent(in) :: mechanism         !< the mechanism
+    integer, intent(in) :: numbers(:)                     !< of the contacts
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics      !< its plan of dynamics
+    type(state_type), intent(in) :: state                 !< the state, with the velocities of links
+    type(lagrange_work_type), intent(in) :: work          !< with the coefficients of motion and the Jacobian
+    logical, intent(in) :: moves(:)                       !< (independent) no drive moves the coordinate
+    type(contact_rows_type), intent(out) :: equations     !< their equations
+    type(error_type), allocatable, intent(out) :: err     !< allocated if a coordinate has no inertia
+    type(link_motion_type) :: ball, surface
+    real(wp) :: all_rows(size(plan%independent), 3)
+    integer :: i, j, n, failed_at
+
+    equations%moving = pack([(i, i=1, size(plan%independent))], moves)
+    n = size(equations%moving)
+    allocate (equations%factors(n, n))
+    do j = 1, n
+      do i = 1, j
+        equations%factors(j, i) = work%coefficients(max(equations%moving(i), equations%moving(j)), &
+                                                    min(equations%moving(i), equations%moving(j)))
+        equations%factors(i, j) = equations%factors(j, i)
+      end do
+    end do
+    call cholesky_factorize(n, equations%factors, failed_at)
+    if (failed_at > 0) then
+      call raise(err, exit_data, failure_no_inertia)
+      err%failure%coordinates = [plan%independent(equations%moving(failed_at))]
+      return
+    end if
+    allocate (equations%places(size(numbers)), equations%axes(3, 3, size(numbers)), equations%rows(n, 3, size(numbers)))
+    do i = 1, size(numbers)
+      associate (place => equations%places(i), axes => equations%axes(:, :, i))
+        call place_of_contact(mechanism%contacts(numbers(i)), plan, state, place, ball, surface)
+        axes(:, 1) = place%normal
+        axes(:, 2:3) = place%tangents()
+        all_rows = 0.0_wp
+        call add_link(mechanism%contacts(numbers(i))%links(1), 1.0_wp)
+        call add_link(mechanism%contacts(numbers(i))%links(2), -1.0_wp)
+        equations%rows(:, :, i) = all_rows(equations%moving, :)
+      end associate
+    end do
+    equations%answers = equations%rows
+    do i = 1, size(numbers)
+      do j = 1, 3
+        if (n > 0) call cholesky_solve(n, equations%factors, equations%answers(:, j, i))
+      end do
+    end do
+  contains
+    !> Add the motion of one link at the contact, by all steps that lead to it.
+    subroutine add_link(link, sign)
+      integer, intent(in) :: link      !< number of the link
+      real(wp), intent(in) :: sign     !< 1 for the ball, -1 for the surface
+      real(wp) :: w(3), v(3), origin(3), row(size(plan%independent))
+      integer :: s, c
+
+      s = plan%frame_of(link)
+      do while (s > 0)
+        call step_screw(plan, state, s, w, v, origin)
+        v = v + cross(w, equations%places(i)%at - plan%origin - origin)
+        call rates_by_independent(plan, dynamics, work%jacobian, plan%steps(s)%coordinate, row)
+        do c = 1, 3
+          all_rows(:, c) = all_rows(:, c) + sign*dot_product(equations%axes(:, c, i), v)*row
+        end do
+        s = plan%steps(s)%parent
+      end do
+    end subroutine add_link
+  end subroutine find_contact_rows
+
+  !> Find rates and accelerations under the forces of contacts, as find_motion does without them.
+  subroutine find_contact_motion(mechanism, plan, dynamics, state, work, self, err)
+    type(mechanism_type), intent(in) :: mechanism         !< the mechanism
+    type(plan_type), intent(in) :: plan                   !< its plan
+    type(dynamics_plan_type), intent(in) :: dynamics      !< its plan of dynamics
+    type(state_type), intent(inout) :: state              !< the state, with placed frames and independent rates; gets the forces
+    type(lagrange_work_type), intent(inout) :: work       !< scratch; gets `accelerations`, and `forces` with those of contacts
+    type(contact_motion_type), intent(inout) :: self      !< the contacts, with their modes; get their forces
+    type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
+    type(contact_rows_type) :: equations
+    integer, allocatable :: acting(:)
+    real(wp) :: free(size(plan%independent)), all_forces(size(plan%independent))
+    integer :: i, c
+
+    state%contact_force = 0.0_wp
+    self%forces = 0.0_wp
+    call find_equations(mechanism, plan, dynamics, state, work, err)
+    if (allocated(err)) return
+    acting = pack([(i, i=1, size(self%acts))], self%acts)
+    call find_contact_rows(mechanism, acting, plan, dynamics, state, work, .not. plan%driven(plan%independent), &
+                           equations, err)
+    if (allocated(err)) return
+    associate (moving => equations%moving)
+      free(:size(moving)) = work%forces(moving) - work%velocity_terms(moving)
+      if (size(moving) > 0) call cholesky_solve(size(moving), equations%factors, free(:size(moving)))
+      call find_forces(mechanism%contacts(acting), plan, state, equations, free(:size(moving)), self, acting, err)
+      if (allocated(err)) return
+      work%accelerations = 0.0_wp
+      work%accelerations(moving) = free(:size(moving))
+      do i = 1, size(acting)
+        associate (force => self%forces(:, acting(i)))
+          work%accelerations(moving) = work%accelerations(moving) + matmul(equations%answers(:, :, i), force)
+          state%contact_force(:, acting(i)) = matmul(equations%axes(:, :, i), force)
+          all_forces = 0.0_wp
+          do c = 1, 3
+            all_forces(moving) = all_forces(moving) + equations%rows(:, c, i)*force(c)
+          end do
+          work%forces = work%forces + all_forces
+        end associate
+      end do
+    end associate
+  end subroutine find_contact_motion
+
+  !> Find the forces of the contacts that act.
+  subroutine find_forces(contacts, plan, state, equations, free, self, acting, err)
+    type(contact_type), intent(in) :: contacts(:)         !< those that act
+    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
+    type(state_type), intent(in) :: state                 !< the state, with the accelerations that rates alone give
+    type(contact_rows_type), intent(in) :: equations      !< their equations
+    real(wp), intent(in) :: free(:)                       !< (moving) accelerations without contacts
+    type(contact_motion_type), intent(inout) :: self      !< all contacts; get their forces
+    integer, intent(in) :: acting(:)                      !< numbers of those that act
+    type(error_type), allocatable, intent(out) :: err     !< allocated if friction draws a contact together
+    integer :: of_contact(3*size(contacts)), along(3*size(contacts)), m, i, j, c
+    real(wp) :: lines(3, 3*size(contacts)), directions(2, size(contacts)), needed(3, size(contacts))
+    real(wp), allocatable :: a(:, :), x(:), scale(:), forces(:)
+    real(wp) :: given(3), acceleration(3), answer(size(free))
+    logical :: depends
+
+    m = 0
+    do i = 1, size(contacts)
+      associate (k => acting(i), force => self%forces(:, acting(i)))
+        given = acceleration_of_contact(contacts(i), plan, state)
+        do c = 1, 3
+          acceleration(c) = dot_product(equations%axes(:, c, i), given) + dot_product(equations%rows(:, c, i), free)
+        end do
+        needed(:, i) = -acceleration
+        directions(:, i) = slip_direction(contacts(i), equations%places(i), equations%axes(:, :, i), self%direction(:, k))
+        if (contacts(i)%is_rigid) then
+          call add(1, [1.0_wp, 0.0_wp, 0.0_wp])
+          if (.not. self%sticks(k)) lines(2:3, m) = -contacts(i)%sliding_friction*directions(:, i)
+        else
+          force(1) = contacts(i)%normal_force(equations%places(i))
+          if (.not. self%sticks(k)) force(2:3) = -contacts(i)%sliding_friction*force(1)*directions(:, i)
+        end if
+        if (.not. self%sticks(k)) cycle
+        call add(2, [0.0_wp, 1.0_wp, 0.0_wp])
+        call add(3, [0.0_wp, 0.0_wp, 1.0_wp])
+      end associate
+    end do
+    if (m == 0) return
+    ! accelerations by the forces that are known
+    do i = 1, size(contacts)
+      if (.not. any(abs(self%forces(:, acting(i))) > 0.0_wp)) cycle
+      answer = matmul(equations%answers(:, :, i), self%forces(:, acting(i)))
+      do j = 1, size(contacts)
+        needed(:, j) = needed(:, j) - matmul(answer, equations%rows(:, :, j))
+      end do
+    end do
+    allocate (a(m, m), x(m))
+    do j = 1, m
+      answer = matmul(equations%answers(:, :, of_contact(j)), lines(:, j))
+      do i = 1, m
+        a(i, j) = dot_product(equations%rows(:, along(i), of_contact(i)), answer)
+      end do
+      x(j) = needed(along(j), of_contact(j))
+      if (along(j) > 1 .or. a(j, j) > 0.0_wp) cycle
+      if (.not. dot_product(equations%rows(:, 1, of_contact(j)), equations%answers(:, 1, of_contact(j))) > 0.0_wp) cycle
+      call raise(err, exit_integrator, failure_contact_paradox)
+      err%failure%number = acting(of_contact(j))
+      err%failure%t = state%t
+      associate (k => of_contact(j))
+        err%failure%values = reshape([contacts(k)%sliding_friction, &
+                                      dot_product(equations%rows(:, 1, k), equations%answers(:, 1, k)) &
+                                      /dot_product(equations%rows(:, 1, k), matmul(equations%answers(:, 2:3, k), &
+                                                                                   directions(:, k)))], [1, 2])
+        err%place = contacts(k)%place
+      end associate
+      return
+    end do
+    allocate (scale(m), forces(m), source=1.0_wp)
+    call solve_least(a, x, scale, forces, depends)
+    if (depends .and. any(self%sticks(acting))) then
+      ! contacts that stick share their friction in parts of what each can hold
+      do j = 1, m
+        scale(j) = maxval(abs(forces))
+        if (along(j) > 1) scale(j) = contacts(of_contact(j))%static_friction*max(normal_of(of_contact(j)), tiny(1.0_wp))
+      end do
+      call solve_least(a, x, scale, forces, depends)
+    end if
+    do j = 1, m
+      self%forces(:, acting(of_contact(j))) = self%forces(:, acting(of_contact(j))) + forces(j)*lines(:, j)
+    end do
+  contains
+    !> The normal force of a contact.
+    pure real(wp) function normal_of(k) result(normal)
+      integer, intent(in) :: k   !< its place among those that act
+
+      normal = self%forces(1, acting(k)) + sum(forces, of_contact(:m) == k .and. along(:m) == 1)
+    end function normal_of
+
+    !> Add an unknown force, and the condition that the acceleration along the same axis vanishes.
+    subroutine add(axis, line)
+      integer, intent(in) :: axis       !< number of the axis
+      real(wp), intent(in) :: line(3)   !< the force along all axes, per unit of the unknown
+
+      m = m + 1
+      of_contact(m) = i
+      along(m) = axis
+      lines(:, m) = line
+    end subroutine add
+  end subroutine find_forces
+
+  !> The direction of slip along the tangents, on the side of an earlier direction: a contact that comes to rest within a step would turn back
+  !> there otherwise. Where the slip is round-off, it is the earlier direction itself.
+  pure function slip_direction(contact, place, axes, earlier) result(direction)
+    type(contact_type), intent(in) :: contact         !< the contact
+    type(contact_place_type), intent(in) :: place     !< its place
+    real(wp), intent(in) :: axes(3, 3)                !< normal and tangents
+    real(wp), intent(in) :: earlier(3)                !< of length 1, fixed axes
+    real(wp) :: direction(2)
+    real(wp) :: before(2)
+
+    direction = 0.0_wp
+    if (.not. contact%has_friction()) return
+    before = matmul(earlier, axes(:, 2:3))
+    if (norm2(before) > 0.0_wp) before = before/norm2(before)
+    direction = matmul(place%slip, axes(:, 2:3))
+    if (norm2(direction) <= slip_of_round_off*place%speed) then
+      direction = before
+    else
+      direction = direction/norm2(direction)
+      if (dot_product(direction, before) < 0.0_wp) direction = -direction
+    end if
+  end function slip_direction
+
+  !> Note the directions in which contacts slide, where a step begins.
+  pure subroutine note_slip(mechanism, plan, state, self)
+    type(mechanism_type), intent(in) :: mechanism          !< the mechanism
+    type(plan_type), intent(in) :: plan                    !< its plan
+    type(state_type), intent(in) :: state                  !< the state, with the velocities of links
+    type(contact_motion_type), intent(inout) :: self       !< the contacts; get directions
+    type(contact_place_type) :: place
+    type(link_motion_type) :: ball, surface
+    real(wp) :: slip(3)
+    integer :: i
+
+    do i = 1, size(self%acts)
+      associate (contact => mechanism%contacts(i))
+        if (.not. self%acts(i) .or. self%sticks(i) .or. .not. contact%has_friction()) cycle
+        call place_of_contact(contact, plan, state, place, ball, surface)
+        slip = place%slip - place%gap_rate()*place%normal
+        if (norm2(slip) <= slip_of_round_off*place%speed .or. dot_product(slip, self%direction(:, i)) < 0.0_wp) cycle
+        self%direction(:, i) = slip/norm2(slip)
+      end associate
+    end do
+  end subroutine note_slip
+
+  !> Correct the independent coordinates by one step of Newton's method, so that rigid contacts that are closed have no gap.
+  subroutine correct_positions(mechanism, plan, dynamics, state, work, self, corrected, err)
+    type(mechanism_type), intent(in) :: mechanism         !< the mechanism
+    type(plan_type), intent(in) :: plan                   !< its plan
+    type(dynamics_plan_type), intent(in) :: dynamics      !< its plan of dynamics
+    type(state_type), intent(inout) :: state              !< the state, with placed frames and independent rates; coordinates change
+    type(lagrange_work_type), intent(inout) :: work       !< scratch
+    type(contact_motion_type), intent(in) :: self         !< the contacts, with their modes
+    logical, intent(out) :: corrected                     !< there was a gap; chains are to be closed anew
+    type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
+    type(contact_rows_type) :: equations
+    real(wp), allocatable :: gaps(:), changes(:)
+    integer, allocatable :: closed(:)
+    integer :: i
+    logical :: depends
+
+    corrected = .false.
+    closed = pack([(i, i=1, size(self%acts))], self%acts .and. mechanism%contacts%is_rigid)
+    if (size(closed) == 0) return
+    call find_equations(mechanism, plan, dynamics, state, work, err)
+    if (allocated(err)) return
+    call find_contact_rows(mechanism, closed, plan, dynamics, state, work, .not. plan%driven(plan%independent), &
+                           equations, err)
+    if (allocated(err)) return
+    gaps = equations%places%gap
+    if (maxval(abs(gaps)) <= closed_part*plan%length) return
+    corrected = .true.
+    allocate (changes(size(gaps)))
+    call solve_least(normal_matrix(equations), gaps, spread(1.0_wp, 1, size(gaps)), changes, depends)
+    associate (moved => plan%independent(equations%moving))
+      do i = 1, size(closed)
+        state%q(moved) = state%q(moved) - changes(i)*equations%answers(:, 1, i)
+      end do
+    end associate
+  end subroutine correct_positions
+
+  !> The matrix J M^-1 J^T of the normals of some contacts.
+  pure function normal_matrix(equations) result(matrix)
+    type(contact_rows_type), intent(in) :: equations      !< their equations
+    real(wp) :: matrix(size(equations%places), size(equations%places))
+
+    matrix = matmul(transpose(equations%rows(:, 1, :)), equations%answers(:, 1, :))
+  end function normal_matrix
+
+  !> Correct the independent rates, so that gaps of rigid contacts that are closed have no rates, and contacts that stick no slip.
+  subroutine correct_rates(mechanism, plan, dynamics, state, work, self, err)
+    type(mechanism_type), intent(in) :: mechanism         !< the mechanism
+    type(plan_type), intent(in) :: plan                   !< its plan
+    type(dynamics_plan_type), intent(in) :: dynamics      !< its plan of dynamics
+    type(state_type), intent(inout) :: state              !< the state, with placed frames and independent rates, which change
+    type(lagrange_work_type), intent(inout) :: work       !< scratch
+    type(contact_motion_type), intent(in) :: self         !< the contacts, with their modes
+    type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
+    type(contact_rows_type) :: equations
+    integer, allocatable :: acting(:)
+    integer, dimension(3*size(self%acts)) :: of_contact, along
+    real(wp), allocatable :: a(:, :), x(:), changes(:)
+    integer :: i, j, m, c
+    logical :: depends
+
+    acting = pack([(i, i=1, size(self%acts))], self%acts .and. (mechanism%contacts%is_rigid .or. self%sticks))
+    if (size(acting) == 0) return
+    call find_equations(mechanism, plan, dynamics, state, work, err)
+    if (allocated(err)) return
+    call find_contact_rows(mechanism, acting, plan, dynamics, state, work, .not. plan%driven(plan%independent), &
+                           equations, err)
+    if (allocated(err)) return
+    m = 0
+    do i = 1, size(acting)
+      do c = 1, 3
+        if (merge(mechanism%contacts(acting(i))%is_rigid, self%sticks(acting(i)), c == 1)) then
+          m = m + 1
+          of_contact(m) = i
+          along(m) = c
+        end if
+      end do
+    end do
+    allocate (a(m, m), x(m), changes(m))
+    do j = 1, m
+      do i = 1, m
+        a(i, j) = dot_product(equations%rows(:, along(i), of_contact(i)), equations%answers(:, along(j), of_contact(j)))
+      end do
+      x(j) = -dot_product(equations%axes(:, along(j), of_contact(j)), equations%places(of_contact(j))%slip)
+    end do
+    call solve_least(a, x, spread(1.0_wp, 1, m), changes, depends)
+    associate (moved => plan%independent(equations%moving))
+      do j = 1, m
+        state%dq(moved) = state%dq(moved) + changes(j)*equations%answers(:, along(j), of_contact(j))
+      end do
+    end associate
+  end subroutine correct_rates
+end module mech9_contact_motion

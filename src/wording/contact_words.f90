@@ -1,0 +1,45 @@
+!> Sentences about contacts of links that a motion cannot have.
+module mech9_contact_words
+  use mech9_text, only: to_text
+  use mech9_failure, only: failure_type
+  use mech9_integration_failures, only: failure_contact_paradox
+  use mech9_event_failures, only: failure_contact_start, failure_contact_violated, failure_undecided_contact
+  use mech9_simulation_failures, only: failure_contact_passed, failure_contact_sensitivity
+  implicit none
+  private
+  public :: explain_contact_failure
+
+contains
+
+  !> The sentence about a failure at contacts. `text` stays as it is for another kind.
+  pure subroutine explain_contact_failure(failure, text)
+    type(failure_type), intent(in) :: failure             !< any kind
+    character(len=:), allocatable, intent(inout) :: text  !< the message
+
+    select case (failure%kind)
+    case (failure_contact_start)
+      text = 'the links of contact '//to_text(failure%number)//' are '//to_text(-failure%values(1, 1), 4)// &
+             ' m within each other at the start. Start elsewhere, or move the surface'
+    case (failure_contact_violated)
+      text = 'the drives press the links of contact '//to_text(failure%number)//' into each other from t = '// &
+             to_text(failure%t, 10)//' s on; the gap has the rate '//to_text(failure%values(1, 1), 6)// &
+             ' m/s. Change the drives, or make the contact compliant by stiffness='
+    case (failure_undecided_contact)
+      text = 'the motion ends at t = '//to_text(failure%t, 10)//' s: the forces of rigid contacts with friction have '// &
+             trim(merge('no solution      ', 'several solutions', failure%limit == 1))//' there, among them contact '// &
+             to_text(failure%number)//' (the paradox of Painleve). Lower friction=, or make the contact compliant by stiffness='
+    case (failure_contact_paradox)
+      text = 'the friction of contact '//to_text(failure%number)//' has no solution from t = '//to_text(failure%t, 10)// &
+             ' s on (the paradox of Painleve): its coefficient is '//to_text(failure%values(1, 1), 8)//', and from '// &
+             to_text(failure%values(1, 2), 8)//' on friction draws the links together faster than they are pressed apart. '// &
+             'Lower friction=, or end the motion before'
+    case (failure_contact_passed)
+      text = 'the links of contact '//to_text(failure%number)//' move into each other at t = '//to_text(failure%t, 10)// &
+             ' s: at t = '//to_text(failure%t_stop, 10)//' s they would be '//to_text(-failure%values(1, 1), 4)// &
+             ' m within each other. Change the drives, or move the surface'
+    case (failure_contact_sensitivity)
+      text = 'derivatives by the parameters are not computed with contacts of links, as contact '//to_text(failure%number)// &
+             '. Leave out the contact, the parameters, or sensitivities and gradients'
+    end select
+  end subroutine explain_contact_failure
+end module mech9_contact_words

@@ -1,0 +1,34 @@
+"""Data files of mechanisms whose contacts a motion cannot have."""
+SLIDING_POINT = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=0,0,1 /
+&body link=2, mass=1 /
+&point name='P', link=2, position=0,0,0 /
+&initial coordinate=1, position=1, velocity=0 /
+&contact point='P' /
+&time end=1, intervals=10 /
+"""
+SUNK_POINT = SLIDING_POINT.replace('position=1,', 'position=-0.25,')
+DRIVEN_POINT = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=0,0,1 /
+&point name='P', link=2, position=0,0,0.5 /
+&drive coordinate=1, kind='polynomial', coefficients=0,-1 /
+&contact point='P' /
+&time end=1, intervals=10 /
+"""
+PRESSED_POINT = DRIVEN_POINT.replace('cq=1', 'cq=1,2') + """&pair coordinate=2, links=1,3, kind='prismatic', axis=0,1,0 /
+&body link=2, mass=1 /
+&body link=3, mass=1 /
+&initial coordinate=2, position=0, velocity=1 /
+"""
+# a rod of 2 m at 60 degrees slides on its end
+ROD = """&structure cq=1,2,3 /
+&pair coordinates=1,2,3, links=1,2, kind='planar', axis=0,-1,0, zero=1,0,0 /
+&body link=2, mass=1, inertia=0.3333333333333333,0.3333333333333333,0.3333333333333333,0,0,0 /
+&gravity acceleration=0,0,-9.81 /
+&point name='A', link=2, position=-1,0,0 /
+&initial coordinate=1, position=0, velocity=-1 /
+&initial coordinate=2, position=0.8660254037844386, velocity=0 /
+&initial coordinate=3, position=1.0471975511965976, velocity=0 /
+&contact point='A', friction=1.5 /
+&time end=1, intervals=10 /
+"""
