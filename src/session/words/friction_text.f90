@@ -55,12 +55,15 @@ contains
     write (unit, '(a)') words
   end subroutine print_rest
 
-  !> Say that frictions do not count in an equilibrium; nothing where there are none.
+  !> Say that frictions and rigid contacts do not count in an equilibrium; nothing where there are none.
   subroutine print_left_out(unit, mechanism)
     integer, intent(in) :: unit                        !< the output unit
     type(mechanism_type), intent(in) :: mechanism      !< the mechanism
 
     if (mechanism%has_frictions()) write (unit, '(a)') &
       'friction counts as 0: with it, the mechanism may rest in other positions near an equilibrium, too'
+    if (.not. mechanism%has_contacts()) return
+    if (any(mechanism%contacts%is_rigid)) write (unit, '(a)') &
+      'rigid contacts of links count as open: the mechanism may rest on them in other positions, and they may forbid this one'
   end subroutine print_left_out
 end module mech9_friction_text
