@@ -7,7 +7,7 @@
 !> unique: F. Genot and B. Brogliato, New Results on Painleve Paradoxes, Eur. J. Mech. A 18 (1999).
 !>
 !> Modes are guessed and the worst one is exchanged, from all contacts that stick on. Where that does not lead to a solution, or where
-!> friction can draw a contact together, all modes are tried. In space the direction of a contact that begins to slide is iterated.
+!> friction can draw a contact together that slides, all modes are tried. The direction of a contact that begins to slide is iterated.
 module mech9_friction_cones
   use mech9_kinds, only: wp
   use mech9_singular_values, only: decompose
@@ -49,8 +49,8 @@ module mech9_friction_cones
   !> Forces may leave their cones by this part of all forces: round-off of the solution.
   real(wp), parameter :: round_off_of_forces = 1.0e-10_wp
   !> Directions are found where they change by less than this, in at most so many iterations.
-  real(wp), parameter :: same_direction = 1.0e-14_wp
-  integer, parameter :: most_iterations = 500
+  real(wp), parameter :: same_direction = 1.0e-13_wp
+  integer, parameter :: most_iterations = 60
   !> Choices of modes that are tried at most: four contacts at rest have 256.
   integer, parameter :: most_choices = 1024
 
@@ -90,19 +90,17 @@ contains
     call try_all(self, agrees, found)
   end subroutine solve
 
-  !> Whether friction cannot draw any contact together, whatever its direction: the force that closes it alone is then unique.
+  !> Whether friction cannot draw any contact together that slides already: the force that closes it alone is then unique.
   pure logical function is_certain(self)
     class(friction_cones_type), intent(in) :: self   !< the contacts
-    real(wp) :: coupling
     integer :: i
 
     is_certain = .true.
     do i = 1, self%n
-      if (self%given(i) >= 0.0_wp) cycle
+      if (self%given(i) >= 0.0_wp .or. .not. self%moves(i)) cycle
       associate (row => self%w(3*i - 2, 3*i - 2:3*i))
-        coupling = norm2(row(2:3))
-        if (self%moves(i)) coupling = dot_product(row(2:3), self%direction(:, i))
-        is_certain = is_certain .and. self%sliding(i)*coupling < row(1)*(1.0_wp - round_off_of_forces)
+        is_certain = is_certain .and. self%sliding(i)*dot_product(row(2:3), self%direction(:, i)) < &
+                                      row(1)*(1.0_wp - round_off_of_forces)
       end associate
     end do
   end function is_certain
@@ -178,38 +176,39 @@ contains
     class(friction_cones_type), intent(inout) :: self   !< the contacts, with modes; get forces and directions
     integer, intent(out) :: worst                       !< number of the contact; 0: all agree
     integer, intent(out) :: wanted                      !< the mode that it should have; negative: there are no such forces
-    real(wp) :: v(3*self%n), size_of_force, most, excess, tangential
-    real(wp) :: changed(2), direction(2)
+    real(wp) :: v(3*self%n), size_of_force, most, excess, tangential, change, turned
     integer :: i, iteration
-    logical :: solved, turns, turned(self%n)
+    logical :: solved, opposed(self%n)
 
     worst = 0
     wanted = -1
-    turned = .false.
     call find_directions(self)
+    opposed = .false.
     do iteration = 1, most_iterations
-      call find_forces(self, solved)
-      if (.not. solved) then
-        worst = 1
-        return
-      end if
-      v = self%outcome()
-      turns = .false.
+      change = 0.0_wp
       do i = 1, self%n
-        if (self%mode(i) /= slides .or. self%moves(i) .or. .not. self%sliding(i) > 0.0_wp) cycle
-        changed = v(3*i - 1:3*i)
-        if (norm2(changed) <= round_off_of_forces*(sum(abs(self%b)) + maxval(abs(v)))) cycle
-        direction = changed/norm2(changed)
-        ! a contact that is drawn back may slide the other way, but not back again
-        if (dot_product(direction, self%direction(:, i)) <= 0.0_wp) then
-          if (turned(i)) cycle
-          turned(i) = .true.
+        call find_forces(self, solved)
+        if (.not. solved) then
+          worst = 1
+          return
         end if
-        turns = turns .or. maxval(abs(direction - self%direction(:, i))) > same_direction
-        self%direction(:, i) = direction
+        if (.not. begins_to_slide(self, i)) cycle
+        call turn_direction(self, i, turned)
+        change = max(change, turned)
       end do
-      if (.not. turns) exit
+      if (change > same_direction) cycle
+      ! a contact that is drawn back may slide the other way
+      v = self%outcome()
+      do i = 1, self%n
+        if (opposed(i) .or. .not. begins_to_slide(self, i)) cycle
+        if (dot_product(v(3*i - 1:3*i), self%direction(:, i)) >= -round_off_of_forces*(sum(abs(self%b)) + maxval(abs(v)))) cycle
+        opposed(i) = .true.
+        self%direction(:, i) = -self%direction(:, i)
+        change = 1.0_wp
+      end do
+      if (change <= same_direction) exit
     end do
+    v = self%outcome()
     size_of_force = maxval(abs(self%force)) + tiny(size_of_force)
     most = 0.0_wp
     do i = 1, self%n
@@ -254,6 +253,56 @@ contains
       wanted = other_mode
     end subroutine take
   end subroutine try_modes
+
+  !> Whether a contact begins to slide in its mode, in a direction that is to be found.
+  pure logical function begins_to_slide(self, i)
+    class(friction_cones_type), intent(in) :: self   !< the contacts, with modes
+    integer, intent(in) :: i                         !< number of the contact
+
+    begins_to_slide = self%mode(i) == slides .and. .not. self%moves(i) .and. self%sliding(i) > 0.0_wp
+  end function begins_to_slide
+
+  !> Turn the direction of a contact that begins to slide, with the normal forces and the friction of others as they are. With the size F of
+  !> its friction and the tangential outcome c without it, the direction d has (F W_tt + beta) d = c with beta >= 0 and the length 1; beta
+  !> is the size of the outcome. Without such a beta the contact would not slide: the direction is then that of beta = 0.
+  pure subroutine turn_direction(self, i, turned)
+    class(friction_cones_type), intent(inout) :: self   !< the contacts, with their forces; gets the direction
+    integer, intent(in) :: i                            !< number of the contact
+    real(wp), intent(out) :: turned                     !< by how much it changed
+    real(wp) :: m(2, 2), c(2), d(2), of_force, beta, slope, length, spread_of_m, mean, axes(2, 2), values(2), parts(2), angle
+    integer :: iteration
+
+    turned = 0.0_wp
+    of_force = self%sliding(i)*self%force(3*i - 2)
+    if (.not. of_force > 0.0_wp) return
+    m = of_force*self%w(3*i - 1:3*i, 3*i - 1:3*i)
+    c = self%b(3*i - 1:3*i) + matmul(self%w(3*i - 1:3*i, :), self%force) + matmul(m, self%direction(:, i))
+    if (.not. norm2(c) > 0.0_wp) return
+    ! principal axes of the matrix
+    mean = 0.5_wp*(m(1, 1) + m(2, 2))
+    spread_of_m = hypot(0.5_wp*(m(1, 1) - m(2, 2)), m(1, 2))
+    angle = 0.0_wp
+    if (spread_of_m > 0.0_wp) angle = 0.5_wp*atan2(m(1, 2), 0.5_wp*(m(1, 1) - m(2, 2)))
+    axes = reshape([cos(angle), sin(angle), -sin(angle), cos(angle)], [2, 2])
+    values = max([mean + spread_of_m, mean - spread_of_m], 0.0_wp)
+    parts = matmul(c, axes)
+    ! one over the length grows nearly evenly with beta, from below
+    beta = 0.0_wp
+    do iteration = 1, most_iterations
+      d = 0.0_wp
+      where (values + beta > 0.0_wp) d = parts/(values + beta)
+      length = norm2(d)
+      if (.not. length > 1.0_wp) exit
+      slope = sum(d**2/(values + beta), mask=values + beta > 0.0_wp)/length**3
+      if (.not. slope > 0.0_wp) exit
+      if ((1.0_wp - 1.0_wp/length)/slope <= same_direction*beta) exit
+      beta = beta + (1.0_wp - 1.0_wp/length)/slope
+    end do
+    if (.not. length > 0.0_wp) return
+    d = matmul(axes, d/length)
+    turned = maxval(abs(d - self%direction(:, i)))
+    self%direction(:, i) = d
+  end subroutine turn_direction
 
   !> Find directions for the contacts that begin to slide: against the forces that would keep them at rest, if the others act as now.
   subroutine find_directions(self)

@@ -10,7 +10,7 @@
 module mech9_contact_equations
   use mech9_kinds, only: wp
   use mech9_tolerances, only: round_off_of_rates
-  use mech9_event_tolerances, only: round_off_of_impacts, at_rest, tied
+  use mech9_event_tolerances, only: round_off_of_impacts, at_rest, still, tied
   use mech9_error, only: error_type, raise, exit_singular
   use mech9_event_failures, only: failure_stop_violated, failure_singular_contact, failure_contact_violated, &
     failure_undecided_contact
@@ -101,6 +101,9 @@ contains
           speed = place%speed
           equations%still(i) = at_rest*speed + epsilon(speed)*plan%length/duration
           equations%round_off(i) = round_off_of_rates*speed + epsilon(speed)*plan%length/duration
+          ! what integration leaves in the rate of a closed gap is no impact
+          if (contacts(i)%held) equations%round_off(i) = equations%round_off(i) &
+            + still*plan%length*maxval(abs(state%dq(plan%independent))/plan%unit_of(plan%independent))
           equations%rubs = equations%rubs .or. contact%has_friction() .or. .not. contact%is_rigid
         end associate
       end do
@@ -171,7 +174,7 @@ contains
                                  impulses(1, :), holds, solved)
     end if
     if (.not. solved) then
-      call fail(system, contacts, equations, err)
+      call fail_unsolved(system, contacts, equations, err)
       return
     end if
     rates = equations%rates
@@ -282,11 +285,7 @@ contains
       call cones%solve(found)
       if (found == several_solutions) call fail_undecided(system, contacts, 2, err)
       if (found /= one_solution .and. .not. allocated(err)) then
-        if (all([(equations%g(i, i) > 0.0_wp .or. .not. contacts(i)%is_rigid, i=1, size(contacts))])) then
-          call fail_undecided(system, contacts, 1, err)
-        else
-          call fail(system, contacts, equations, err)
-        end if
+        call fail_unsolved(system, contacts, equations, err)
       end if
       if (allocated(err)) return
       v = cones%outcome()
@@ -346,6 +345,21 @@ contains
       force = contact%normal_force(place)
     end associate
   end function compliant_force
+
+  !> Fail because there are no impulses or forces: of drives that press, or of friction where free coordinates move all gaps.
+  subroutine fail_unsolved(system, contacts, equations, err)
+    class(motion_system_type), intent(in) :: system            !< the system
+    type(stop_contact_type), intent(in) :: contacts(:)         !< the contacts that touch
+    type(contact_equations_type), intent(in) :: equations      !< their equations
+    type(error_type), allocatable, intent(out) :: err          !< the failure
+    integer :: i
+
+    if (equations%rubs .and. all([(equations%g(i, i) > 0.0_wp .or. .not. contacts(i)%is_rigid, i=1, size(contacts))])) then
+      call fail_undecided(system, contacts, 1, err)
+    else
+      call fail(system, contacts, equations, err)
+    end if
+  end subroutine fail_unsolved
 
   !> Fail because contacts with friction have no solution, or several.
   subroutine fail_undecided(system, contacts, how, err)

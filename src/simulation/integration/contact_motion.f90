@@ -10,7 +10,7 @@ module mech9_contact_motion
   use mech9_error, only: error_type, raise, exit_data, exit_integrator
   use mech9_dynamics_failures, only: failure_no_inertia
   use mech9_integration_failures, only: failure_contact_paradox
-  use mech9_integration_tolerances, only: slip_of_round_off
+  use mech9_integration_tolerances, only: slip_of_errors
   use mech9_rotation, only: cross
   use mech9_cholesky, only: cholesky_factorize, cholesky_solve
   use mech9_friction_cones, only: solve_least
@@ -336,7 +336,7 @@ contains
   end subroutine find_forces
 
   !> The direction of slip along the tangents, on the side of an earlier direction: a contact that comes to rest within a step would turn back
-  !> there otherwise. Where the slip is round-off, it is the earlier direction itself.
+  !> there otherwise. The earlier direction has a small part in it, so that it is smooth where the slip is an error of integration.
   pure function slip_direction(contact, place, axes, earlier) result(direction)
     type(contact_type), intent(in) :: contact         !< the contact
     type(contact_place_type), intent(in) :: place     !< its place
@@ -350,12 +350,10 @@ contains
     before = matmul(earlier, axes(:, 2:3))
     if (norm2(before) > 0.0_wp) before = before/norm2(before)
     direction = matmul(place%slip, axes(:, 2:3))
-    if (norm2(direction) <= slip_of_round_off*place%speed) then
-      direction = before
-    else
-      direction = direction/norm2(direction)
-      if (dot_product(direction, before) < 0.0_wp) direction = -direction
-    end if
+    if (dot_product(direction, before) < 0.0_wp) direction = -direction
+    direction = direction + slip_of_errors*place%speed*before
+    if (.not. norm2(direction) > 0.0_wp) direction = before
+    if (norm2(direction) > 0.0_wp) direction = direction/norm2(direction)
   end function slip_direction
 
   !> Note the directions in which contacts slide, where a step begins.
@@ -374,7 +372,7 @@ contains
         if (.not. self%acts(i) .or. self%sticks(i) .or. .not. contact%has_friction()) cycle
         call place_of_contact(contact, plan, state, place, ball, surface)
         slip = place%slip - place%gap_rate()*place%normal
-        if (norm2(slip) <= slip_of_round_off*place%speed .or. dot_product(slip, self%direction(:, i)) < 0.0_wp) cycle
+        if (norm2(slip) <= slip_of_errors*place%speed .or. dot_product(slip, self%direction(:, i)) < 0.0_wp) cycle
         self%direction(:, i) = slip/norm2(slip)
       end associate
     end do

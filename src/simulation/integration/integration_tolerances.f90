@@ -6,7 +6,7 @@ module mech9_integration_tolerances
   implicit none
   private
   public :: trusted_closing, trusted_between_steps, worthwhile_improvement, short_way, round_off_of_jumps, &
-    steepest_slope, third_derivative_step, slip_of_round_off
+    steepest_slope, third_derivative_step, slip_of_errors
 
   ! Closed chains.
 
@@ -41,6 +41,6 @@ module mech9_integration_tolerances
 
   ! Contacts.
 
-  !> Slip of a contact is round-off below this part of the speeds from which it comes: corrections leave 1e-15 of them.
-  real(wp), parameter :: slip_of_round_off = 1.0e-12_wp
+  !> The direction of a slip below this part of the speeds from which it comes is an error of integration; its direction does not change then.
+  real(wp), parameter :: slip_of_errors = 1.0e-8_wp
 end module mech9_integration_tolerances
