@@ -8,6 +8,7 @@ module mech9_film
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
+  use mech9_motion_event, only: motion_events_type
   use mech9_columns, only: columns_type
   use mech9_frame_motion, only: point_motion, link_motion
   implicit none
@@ -37,6 +38,11 @@ module mech9_film
     real(wp), allocatable :: paths(:, :, :)      !< (3,points,path points) places of the points [m]
     integer, allocatable :: force_pairs(:)       !< pairs whose forces are drawn, by their coordinates
     real(wp), allocatable :: forces(:, :, :)     !< (3,pairs,frames) these forces; not allocated where none are drawn [N]
+    logical, allocatable :: hit(:, :, :)         !< (2,stops,frames) the end of the stop was hit since the frame before
+    integer, allocatable :: friction_coordinates(:)   !< numbers of the coordinates with friction
+    real(wp), allocatable :: rates(:, :)         !< (frictions,frames) rates of these coordinates [rad/s, m/s]
+    logical, allocatable, private :: hit_since(:, :)   !< (2,stops) the end was hit since the last frame
+    integer, private :: events_seen = 0          !< number of events before the last output
     integer, private :: n_outputs = 0            !< number of outputs so far
     integer, private :: expected = 1             !< expected number of outputs
     integer, private :: frame_stride = 1, path_stride = 1
@@ -44,6 +50,7 @@ module mech9_film
     real(wp), allocatable, private :: latest(:, :, :)   !< (3,points,3) position, velocity, acceleration at the latest output
     real(wp), private :: latest_time = 0.0_wp
   contains
+    procedure :: note_contacts
     procedure :: take
     procedure :: position
     procedure :: direction
@@ -82,9 +89,34 @@ contains
       film%force_pairs = force_pairs
       allocate (film%forces(3, size(force_pairs), frames), source=0.0_wp)
     end if
+    allocate (film%hit(2, 0, frames), film%friction_coordinates(0), film%rates(0, frames), film%hit_since(2, 0))
     allocate (film%r(3, 3, n, frames), film%p(3, n, frames), source=0.0_wp)
     allocate (film%paths(3, size(mechanism%points), points), film%latest(3, size(mechanism%points), 3), source=0.0_wp)
   end function new_film
+
+  !> Note the impacts on stops before the next output, of which no position shows anything, and keep the rates of pairs with friction.
+  !> Without this a film has neither.
+  pure subroutine note_contacts(self, mechanism, events, t)
+    class(film_type), intent(inout) :: self           !< poses and values at the outputs of the run
+    type(mechanism_type), intent(in) :: mechanism     !< the mechanism
+    type(motion_events_type), intent(in) :: events    !< of the run so far, and those that are known to come
+    real(wp), intent(in) :: t                         !< time of the next output [s]
+
+    if (self%n_outputs == 0) then
+      deallocate (self%hit, self%hit_since, self%rates)
+      allocate (self%hit(2, size(mechanism%stops), size(self%times)), self%hit_since(2, size(mechanism%stops)), source=.false.)
+      if (mechanism%has_frictions()) self%friction_coordinates = mechanism%frictions%coordinate
+      allocate (self%rates(size(self%friction_coordinates), size(self%times)), source=0.0_wp)
+    end if
+    do while (self%events_seen < events%count)
+      associate (event => events%items(self%events_seen + 1))
+        if (event%t > t) exit
+        if (event%group == 'stop' .and. event%has_impulse) &
+          self%hit_since(merge(1, 2, event%impulse > 0.0_wp), event%number) = .true.
+      end associate
+      self%events_seen = self%events_seen + 1
+    end do
+  end subroutine note_contacts
 
   !> The next output of the run is kept if its turn has come or if it is the last one.
   pure subroutine take(self, mechanism, plan, state, row, force)
@@ -175,6 +207,9 @@ contains
     self%n_frames = self%n_frames + 1
     self%times(self%n_frames) = state%t
     self%values(:, self%n_frames) = row(2:size(self%names) + 1)
+    self%hit(:, :, self%n_frames) = self%hit_since
+    self%hit_since = .false.
+    self%rates(:, self%n_frames) = state%dq(self%friction_coordinates)
     if (present(force) .and. allocated(self%forces)) self%forces(:, :, self%n_frames) = force(:, self%force_pairs)
     do i = 1, plan%n_links
       call link_motion(plan, state, i, self%r(:, :, i, self%n_frames), self%p(:, i, self%n_frames), omega, v)

@@ -388,6 +388,7 @@ contains
     type(state_type), pointer :: state
 
     call self%simulation%present(plan, state)
+    call self%film%note_contacts(self%simulation%model%mechanism, self%simulation%events, state%t)
     if (self%forces%wanted) then
       call self%film%take(self%simulation%model%mechanism, plan, state, row, self%forces%reactions%force)
     else

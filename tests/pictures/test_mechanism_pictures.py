@@ -3,7 +3,6 @@
 Where joints are is computed here: on Fig. 1 by intersecting circles, on Bricard's loop from the start that its data
 file gives, in all frames of a film from the table of the same run.
 """
-import json
 import math
 import os
 import re
@@ -16,7 +15,7 @@ import numpy as np
 import pytest
 
 from mech9_cases import PATIENCE, read_table, run, text_of
-from svg_pictures import SVG, corners_of, example, place_in, texts_of
+from svg_pictures import SVG, corners_of, example, film_of, nodes_of, picture_of, place_in, texts_of
 
 # pictures give hundredths of a px; a place and the two that fix the scale are rounded
 PX = 0.02
@@ -259,37 +258,6 @@ def test_far_point_of_an_axis(checks, mech9k, tmp_path):
     joints = joints_of(ElementTree.fromstring(drawn('0.5', 'xz')))
     slope = (joints['q2'] - joints['q3'])[1] / (joints['q4'] - joints['q2'])[0]
     checks.near(slope, 0.5 / 2.0, 1e-3, 'one that is near enough stays where it is')
-
-
-def film_of(html):
-    """The constant that the script of a page begins with."""
-    text = re.search(r'const film = (\{.*?\n\});?\n', html, re.S).group(1)
-    text = re.sub(r'(\w+):', r'"\1":', text)
-    return json.loads(re.sub(r',\s*([\]}])', r'\1', text))
-
-
-def picture_of(text):
-    """The picture in a page, or the picture that a file is."""
-    ending = '</svg>\n</figure>' if '<figure>' in text else '</svg>\n'
-    start = re.search(r'<svg [^>]*class="mech9"', text).start()
-    return ElementTree.fromstring(text[start:text.rindex(ending) + len('</svg>')])
-
-
-def turned(q, v):
-    w, u = q[0], np.array(q[1:])
-    t = 2 * np.cross(u, v)
-    return v + w * t + np.cross(u, t)
-
-
-def nodes_of(film, frame):
-    """All nodes in a frame, in m from the middle of the picture."""
-    places = np.array(film['points'], float).reshape(-1, 3)
-    poses = np.array(film['poses'][frame], float).reshape(-1, 7)
-    for i, link in enumerate(film['links']):
-        if link:
-            pose = poses[link - 1]
-            places[i] = turned(pose[3:] / 1e5, places[i]) + pose[:3]
-    return places * film['unit']
 
 
 @pytest.mark.parametrize('program, name, points', (('mech9d', 'double_pendulum', {'A', 'B'}), ('mech9k', 'rsur', {'O', 'A', 'B', 'C'})),

@@ -1,6 +1,8 @@
-"""Shapes and numbers that tests read from pictures of mechanisms in SVG."""
+"""Shapes and numbers that tests read from pictures and films of mechanisms."""
+import json
 import os
 import re
+import xml.etree.ElementTree as ElementTree
 
 import numpy as np
 
@@ -23,3 +25,34 @@ def corners_of(path):
 
 def texts_of(svg):
     return [''.join(text.itertext()) for text in svg.iter(SVG + 'text')]
+
+
+def film_of(html):
+    """The constant that the script of a page begins with."""
+    text = re.search(r'const film = (\{.*?\n\});?\n', html, re.S).group(1)
+    text = re.sub(r'(\w+):', r'"\1":', text)
+    return json.loads(re.sub(r',\s*([\]}])', r'\1', text))
+
+
+def picture_of(text):
+    """The picture in a page, or the picture that a file is."""
+    ending = '</svg>\n</figure>' if '<figure>' in text else '</svg>\n'
+    start = re.search(r'<svg [^>]*class="mech9"', text).start()
+    return ElementTree.fromstring(text[start:text.rindex(ending) + len('</svg>')])
+
+
+def turned(q, v):
+    w, u = q[0], np.array(q[1:])
+    t = 2 * np.cross(u, v)
+    return v + w * t + np.cross(u, t)
+
+
+def nodes_of(film, frame):
+    """All nodes in a frame, in m from the middle of the picture."""
+    places = np.array(film['points'], float).reshape(-1, 3)
+    poses = np.array(film['poses'][frame], float).reshape(-1, 7)
+    for i, link in enumerate(film['links']):
+        if link:
+            pose = poses[link - 1]
+            places[i] = turned(pose[3:] / 1e5, places[i]) + pose[:3]
+    return places * film['unit']

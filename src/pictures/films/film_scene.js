@@ -92,8 +92,16 @@ function drawItem(g, item) {
   } else {
     const d = item.damper ? damper(n, item.shift[0])
       : item.shape == 4 ? windings(item.thread, n, item.shift[0]) : path(item.shape, n);
-    for (const line of g.children) line.setAttribute("d", d);
+    for (const line of g.getElementsByTagName("path")) line.setAttribute("d", d);
   }
+}
+
+// Some items are shown only while a state holds, such as that a stop pushes.
+const passing = film.items.map((item, i) => i).filter(i => film.items[i].state);
+
+function showStates(frame) {
+  for (const i of passing)
+    elements[i].setAttribute("visibility", film.holds[film.items[i].state - 1][frame] == "1" ? "visible" : "hidden");
 }
 
 // A frame is drawn; with `all` also the items that stand still, since the view has changed.
@@ -101,6 +109,7 @@ function drawScene(frame, all) {
   shown = frame;
   place(frame);
   film.items.forEach((item, i) => { if (all || !item.still) drawItem(elements[i], item); });
+  showStates(frame);
   arrange();
 }
 

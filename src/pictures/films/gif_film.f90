@@ -9,11 +9,12 @@ module mech9_gif_film
   use mech9_film, only: film_type
   use mech9_film_clock, only: clock_decimals, clock_text
   use mech9_projection, only: projection_type
-  use mech9_scene, only: scene_type, item_type, closed_path, facing_path, mark, label, in_pin, in_cross, in_cam, &
-                         as_stand, as_ring, as_ball, as_dot, as_centre, as_free, as_name, as_number, &
-                         as_input, as_leader, as_coil, as_cup, in_pairs
+  use mech9_scene, only: scene_type, item_type, closed_path, facing_path, mark, label, in_pin, in_cross, in_cam, in_stop, &
+                         in_pushed, as_stand, as_ring, as_ball, as_dot, as_centre, as_free, as_name, as_number, &
+                         as_input, as_leader, as_coil, as_cup, as_stuck, in_pairs
   use mech9_drawing, only: drawing_type, draw_frame, drawing_order, outline_of
-  use mech9_picture_style, only: style_type, styles, dark_colours, light_colours, colour_of, ink, edge, coil_corners, cup_corners
+  use mech9_picture_style, only: style_type, styles, dark_colours, light_colours, signal, light_signal, colour_of, ink, &
+                                  edge, coil_corners, cup_corners
   use mech9_svg_film, only: duration_of
   use mech9_svg_picture, only: scale_length, axis_length, beyond_axis, shortest_axis
   use mech9_gnuplot, only: quoted, quoted_path, run_gnuplot, gnuplot_package
@@ -106,6 +107,7 @@ contains
     call put_axes(projection, script)
     do i = 1, size(order)
       associate (item => scene%items(order(i)))
+        if (.not. scene%shows(item, frame)) cycle
         select case (item%shape)
         case (mark)
           call put_mark(item, drawing%xy(:, item%nodes(1)), script)
@@ -236,11 +238,15 @@ contains
     if (dark == '') dark = dark_colours(colour_of(item%link))
     light = light_colours(colour_of(item%link))
     if (item%style == in_pin .or. item%style == in_cross) light = grey
+    if (item%style == in_pushed) light = light_signal
     associate (style => styles(item%style))
       if (item%shape == facing_path) then
         call script%polygon(corners, white, dark, style%width)
       else if (item%style == in_cam) then
         call script%polygon(corners, light, dark, edge)
+      else if (item%style == in_stop .or. item%style == in_pushed) then
+        ! a plate is often seen along one of its sides
+        call script%polygon(band(distinct(corners), 0.5_wp*style%width*script%symbol), light, dark, edge)
       else if (item%shape == closed_path) then
         call script%polygon(band(corners, 0.5_wp*style%width*script%symbol), light, dark, edge)
       else if (in_pairs(item) .or. style%has_edge) then
@@ -252,6 +258,20 @@ contains
       end if
     end associate
   end subroutine put_path
+
+  !> The corners of a path without those that follow one at the same place; at least two.
+  pure function distinct(corners) result(kept)
+    real(wp), intent(in) :: corners(:, :)    !< (2,n) corners of a closed path, at least two [px]
+    real(wp), allocatable :: kept(:, :)
+    real(wp), parameter :: least = 0.05_wp
+    logical :: apart(size(corners, 2))
+    integer :: i, n
+
+    n = size(corners, 2)
+    apart = [(norm2(corners(:, i) - corners(:, 1 + modulo(i - 2, n))) > least, i=1, n)]
+    if (count(apart) < 2) apart(:2) = .true.
+    kept = corners(:, pack([(i, i=1, n)], apart))
+  end function distinct
 
   !> Draw one segment of an item: a line, or a band with cut or round ends.
   subroutine put_segment(style, ends, light, dark, script)
@@ -325,6 +345,8 @@ contains
     case (as_centre)
       call script%circle(at, 4.6_wp*s, white, ink, 1.5_wp)
       call script%circle(at, 1.5_wp*s, ink, ink, 1.0_wp)
+    case (as_stuck)
+      call script%circle(at, 3.4_wp*s, signal, ink, 0.5_wp)
     case (as_leader)
       call script%polyline(reshape([at, at + s*item%shift], [2, 2]), thin, 0.8_wp)
     case (as_coil)

@@ -97,6 +97,7 @@ contains
     call put_nodes(scene, numbers, projection%centre, unit, page)
     call put_items(scene, page)
     call put_frames(film, numbers, count, projection%centre, unit, page)
+    call put_states(scene, page)
     call put_values(film, page)
     call page%line('};')
   end subroutine put_film
@@ -149,6 +150,7 @@ contains
         call page%put('{shape: '//to_text(item%shape)//', nodes: ['//to_text(item%nodes - 1, ',')//'], above: ['// &
                       to_text(pack(item%above, item%above > 0), ',')//']')
         if (all(scene%node_link(item%nodes) == 1)) call page%put(', still: true')
+        if (item%state > 0) call page%put(', state: '//to_text(item%state))
         if (item%style == in_thread) call page%put(', thread: true')
         if (item%style == in_damper) call page%put(', damper: true')
         if (item%shape == label .or. item%shape == spring) then
@@ -191,6 +193,34 @@ contains
     end do
     call page%line('],')
   end subroutine put_frames
+
+  !> Append, for each state, a letter for each frame: 1 where it holds.
+  subroutine put_states(scene, page)
+    type(scene_type), intent(in) :: scene   !< nodes, items and states of the picture
+    type(page_type), intent(inout) :: page  !< text to which the page is appended
+    integer :: i
+
+    call page%put('holds: [')
+    if (allocated(scene%holds)) then
+      do i = 1, size(scene%holds, 1)
+        call page%put('"'//letters(scene%holds(i, :))//'",')
+      end do
+    end if
+    call page%line('],')
+
+  contains
+
+    !> A letter for each frame.
+    pure function letters(holds) result(text)
+      logical, intent(in) :: holds(:)   !< (frames)
+      character(len=size(holds)) :: text
+      integer :: frame
+
+      do frame = 1, size(holds)
+        text(frame:frame) = merge('1', '0', holds(frame))
+      end do
+    end function letters
+  end subroutine put_states
 
   !> Append the names and units of the recorded columns, and their values in each frame.
   subroutine put_values(film, page)

@@ -9,7 +9,8 @@ module mech9_svg_film
   use mech9_scene, only: scene_type, item_type, mark, label
   use mech9_drawing, only: drawing_type, draw_frame, drawing_order, outline_of
   use mech9_picture_style, only: styles, mark_svg
-  use mech9_svg_picture, only: put_opening, put_item, put_surroundings, opening_of, label_svg, path_of, place_of
+  use mech9_svg_picture, only: put_opening, put_item, put_surroundings, opening_of, tooltip_of, label_svg, &
+    path_of, place_of
   use mech9_page, only: page_type
   use mech9_xml_text, only: decimal
   implicit none
@@ -44,11 +45,13 @@ contains
     call page%line('<g id="scene">')
     do i = 1, size(order)
       associate (item => scene%items(order(i)))
+        if (item%state > 0) call put_shown_while(scene%holds(item%state, :), duration_of(film), page)
         if (all(scene%node_link(item%nodes) == 1) .or. film%n_frames < 2) then
           call put_item(item, order(i), drawings(1), projection%symbol, page)
         else
           call put_moving(item, order(i), drawings, projection%symbol, duration_of(film), page)
         end if
+        if (item%state > 0) call page%line('</g>')
       end associate
     end do
     call page%line('</g>')
@@ -90,6 +93,30 @@ contains
     duration = max(shortest, min(longest, abs(film%times(film%n_frames) - film%times(1))))
   end function duration_of
 
+  !> Open a group that is shown in some frames only.
+  subroutine put_shown_while(holds, duration, page)
+    logical, intent(in) :: holds(:)         !< (frames) in which it is shown
+    real(wp), intent(in) :: duration        !< time that the film takes to play [s]
+    type(page_type), intent(inout) :: page  !< text to which the group is appended
+    integer :: i
+
+    call page%put('<g visibility="'//trim(word(1))//'"><animate attributeName="visibility"'//timing(duration))
+    do i = 1, size(holds)
+      if (i > 1) call page%put(';')
+      call page%put(trim(word(i)))
+    end do
+    call page%line('"/>')
+
+  contains
+
+    !> The word for a frame.
+    pure character(len=7) function word(frame)
+      integer, intent(in) :: frame   !< number of the frame
+
+      word = merge('visible', 'hidden ', holds(frame))
+    end function word
+  end subroutine put_shown_while
+
   !> Append an item with its form in each frame. A viewer without motion, or a print, shows the first frame.
   subroutine put_moving(item, number, drawings, symbol, duration, page)
     type(item_type), intent(in) :: item            !< one thing to draw
@@ -107,12 +134,12 @@ contains
       call put_values(item, drawings, symbol, page)
       call page%put('"/>')
       if (item%shape == mark) then
-        call page%put('<g transform="scale('//decimal(symbol)//')">'//mark_svg(item%style, item%shift)//'</g>')
+        call page%put('<g transform="scale('//decimal(symbol)//')">'//tooltip_of(item)//mark_svg(item%style, item%shift)//'</g>')
       else
         call page%put(label_svg(item))
       end if
     case default
-      call page%put('>')
+      call page%put('>'//tooltip_of(item))
       call put_moving_path(item, drawings, symbol, duration, '', page)
       if (styles(item%style)%has_edge) call put_moving_path(item, drawings, symbol, duration, ' class="i"', page)
     end select

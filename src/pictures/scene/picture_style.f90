@@ -6,10 +6,11 @@ module mech9_picture_style
   use mech9_kinds, only: wp, pi
   use mech9_xml_text, only: decimal
   use mech9_scene, only: in_cam, as_stand, as_ring, as_ball, as_dot, as_centre, as_free, as_leader, in_damper, as_coil, as_cup, &
-    in_force
+    in_force, in_bracket, as_stuck
   implicit none
   private
-  public :: style_type, styles, dark_colours, light_colours, colour_of, ink, style_sheet, mark_svg, coil_corners, cup_corners
+  public :: style_type, styles, dark_colours, light_colours, signal, light_signal, colour_of, ink, style_sheet, mark_svg, &
+            coil_corners, cup_corners
 
   character(len=7), parameter :: ink = '#222222', ground = '#555555', paper = '#ffffff'
   !> The colours of links, which take them in turn.
@@ -17,6 +18,9 @@ module mech9_picture_style
     '#0072b2', '#b04a00', '#00785a', '#a0457a', '#2f7fb5', '#8a6400', '#5a5a5a']
   character(len=7), parameter :: light_colours(*) = [ &
     '#a9d4ee', '#f7c29b', '#a3dec9', '#ecc4da', '#d6ecfa', '#f7dd8f', '#d9d9d9']
+
+  !> The colours of what holds a coordinate in a frame of a film: a stop that pushes, or a pair that sticks.
+  character(len=7), parameter :: signal = '#d0001f', light_signal = '#ff8a8a'
 
   !> The style in which an item is drawn. A style with an edge is a band: a line of its width in the light colour. An
   !> edge of the dark colour is on both sides.
@@ -48,7 +52,8 @@ module mech9_picture_style
     style_type('stand'), style_type('ring'), style_type('ball'), style_type('dot'), style_type('centre'), &
     style_type('free'), style_type('name'), style_type('number'), style_type('coordinate'), &
     style_type('input'), style_type('leader'), style_type('damper', ink, 1.4_wp), style_type('coil'), style_type('cup'), &
-    style_type('force', '#c00000', 2.2_wp)]
+    style_type('force', '#c00000', 2.2_wp), style_type('stop', '', 3.0_wp, .true.), &
+    style_type('pushed', signal, 3.0_wp, .true.), style_type('bracket', '', 1.5_wp), style_type('stuck')]
 
   !> The width of an edge [px].
   real(wp), parameter, public :: edge = 1.2_wp
@@ -81,12 +86,16 @@ contains
       css = css//rule_of(styles(i), symbol)//nl
     end do
     css = css//rule_of(styles(in_damper), symbol)//nl
-    css = css//rule_of(styles(in_force), symbol)//nl
+    do i = in_force, in_bracket
+      css = css//rule_of(styles(i), symbol)//nl
+    end do
     css = css//'.mech9 .plate.sheet path{fill-opacity:.85}.mech9 .end path{fill:#f2f2f2}'//nl
     do i = 1, size(dark_colours)
       css = css//colour_rules('.l'//achar(48 + i), dark_colours(i), light_colours(i))//nl
     end do
     css = css//'.mech9 .pin .i,.mech9 .cross .i{stroke:#d0d0d0}.mech9 .trace path{stroke-opacity:.85}'//nl// &
+          '.mech9 .pushed path.i{stroke:'//light_signal//';fill:'//light_signal//'}'// &
+          '.mech9 .stuck circle{fill:'//signal//';stroke:'//paper//'}'//nl// &
           '.mech9 .k{fill:'//ink//';stroke:none}.mech9 .w{fill:'//paper//';stroke:'//ink//';stroke-width:1.5}'//nl// &
           '.mech9 .h{stroke:'//ground//';stroke-width:1}.mech9 .g{stroke:'//ink//';stroke-width:1.5;fill:#e8e8e8}'//nl// &
           '.mech9 .e{stroke:#777;stroke-width:.8}.mech9 .s{stroke:'//ink//';stroke-width:1.4}'//nl
@@ -146,6 +155,8 @@ contains
             '<path class="k" d="M0 0V-4.6A4.6 4.6 0 0 1 4.6 0ZM0 0V4.6A4.6 4.6 0 0 1 -4.6 0Z"/>'
     case (as_free)
       svg = '<path class="w" style="fill:'//paper//'" d="M0 -7L7 0L0 7L-7 0Z"/><circle class="k" r="2"/>'
+    case (as_stuck)
+      svg = '<circle r="4"/>'
     case (as_leader)
       svg = '<path class="e" d="M0 0L'//decimal(direction(1))//' '//decimal(direction(2))//'"/>'
     case (as_coil)

@@ -9,7 +9,8 @@ module mech9_scene
   public :: open_path, closed_path, facing_path, segments, spring, mark, label
   public :: in_trace, in_curve, in_guide, in_ground, in_hatch, in_plate, in_block, in_tube, in_pin, in_pin_end, in_spring, &
             in_thread, in_cross, in_cam, as_stand, as_ring, as_ball, as_dot, as_centre, as_free, as_name, as_number, &
-            as_coordinate, as_input, as_leader, in_damper, as_coil, as_cup, in_force, in_pairs
+            as_coordinate, as_input, as_leader, in_damper, as_coil, as_cup, in_force, in_stop, in_pushed, &
+            in_bracket, as_stuck, in_pairs
 
   !> The shape of an item. A facing path is a flat outline that is drawn only if its front, round which it runs
   !> counterclockwise, is turned to the viewer. Segments join each node of an odd number to the next one.
@@ -20,7 +21,8 @@ module mech9_scene
                         in_tube = 8, in_pin = 9, in_pin_end = 10, in_spring = 11, in_thread = 12, in_cross = 13, in_cam = 14, &
                         as_stand = 15, as_ring = 16, as_ball = 17, as_dot = 18, as_centre = 19, as_free = 20, &
                         as_name = 21, as_number = 22, as_coordinate = 23, as_input = 24, as_leader = 25, &
-                        in_damper = 26, as_coil = 27, as_cup = 28, in_force = 29
+                        in_damper = 26, as_coil = 27, as_cup = 28, in_force = 29, in_stop = 30, in_pushed = 31, &
+                        in_bracket = 32, as_stuck = 33
 
   !> One thing to draw.
   type :: item_type
@@ -29,7 +31,8 @@ module mech9_scene
     integer :: link = 0                       !< link whose colour the item has; 0: none
     integer, allocatable :: nodes(:)
     integer :: above(4) = 0                   !< items below this one, whatever their depth
-    character(len=:), allocatable :: text     !< text of a label, or names of the coordinates of a joint
+    character(len=:), allocatable :: text     !< text of a label, names of the coordinates of a joint, or that of a stop
+    integer :: state = 0                      !< number of the state in which alone it is shown; 0: it is shown always
     !> For a label, its place relative to its node, to the right and down [px]. For a stand, its direction; for a
     !> leading line, its end, also to the right and down. For a spring or damper, the first number is its distance from
     !> the line between its nodes.
@@ -44,11 +47,14 @@ module mech9_scene
     real(wp), allocatable :: node_at(:, :)    !< (3,n) place of each node in the system of its link [m]
     type(item_type), allocatable :: items(:)
     integer :: first_sorted = 1, last_sorted = 0
+    logical, allocatable :: holds(:, :)       !< (states,frames) whether each state holds, such as that a stop pushes
   contains
     procedure :: add_node
     procedure :: add_item
     procedure :: add_shifted
     procedure :: add_label
+    procedure :: show_while
+    procedure :: shows
     procedure :: places_at
   end type scene_type
 
@@ -105,6 +111,7 @@ contains
       call move_alloc(grown, self%items)
     end if
     self%n_items = self%n_items + 1
+    self%items(self%n_items) = item_type()
     associate (item => self%items(self%n_items))
       item%shape = shape
       item%style = style
@@ -144,6 +151,32 @@ contains
     self%items(self%n_items)%shift = shift
   end subroutine add_label
 
+  !> Let the last item be shown in some frames only. It is left out if these are none.
+  pure subroutine show_while(self, frames)
+    class(scene_type), intent(inout) :: self  !< nodes and items of the picture
+    logical, intent(in) :: frames(:)          !< (frames) in which the item is shown
+    integer :: n
+
+    if (.not. any(frames)) then
+      self%n_items = self%n_items - 1
+      return
+    end if
+    if (.not. allocated(self%holds)) allocate (self%holds(0, size(frames)))
+    n = size(self%holds, 1) + 1
+    self%holds = transpose(reshape([transpose(self%holds), frames], [size(frames), n]))
+    self%items(self%n_items)%state = n
+  end subroutine show_while
+
+  !> Whether an item is shown in a frame.
+  pure logical function shows(self, item, frame)
+    class(scene_type), intent(in) :: self  !< nodes and items of the picture
+    type(item_type), intent(in) :: item    !< one of its items
+    integer, intent(in) :: frame           !< number of the frame in the film
+
+    shows = item%state == 0
+    if (.not. shows) shows = self%holds(item%state, frame)
+  end function shows
+
   !> The content of an item is moved to another item.
   pure subroutine move_item(from, to)
     type(item_type), intent(inout) :: from  !< loses its nodes and its text
@@ -154,6 +187,7 @@ contains
     to%link = from%link
     to%above = from%above
     to%shift = from%shift
+    to%state = from%state
     call move_alloc(from%nodes, to%nodes)
     if (allocated(from%text)) call move_alloc(from%text, to%text)
   end subroutine move_item

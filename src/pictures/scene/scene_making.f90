@@ -13,6 +13,7 @@ module mech9_scene_making
   use mech9_link_shapes, only: distinct_points, find_shape
   use mech9_pair_symbols, only: symbols_type, prepare_symbols, add_guides, add_stands, add_symbols
   use mech9_spring_symbols, only: add_springs
+  use mech9_stop_symbols, only: add_stops, add_stuck_pairs
   use mech9_scene_labels, only: add_labels
   implicit none
   private
@@ -63,9 +64,11 @@ contains
     end do
     call add_figures(skeleton, scene, shapes)
     call add_springs(mechanism, film, skeleton, projection, shapes, scene, symbols)
+    call add_stops(mechanism, film, skeleton, projection, shapes, scene, symbols)
     call add_symbols(film, skeleton, projection, shapes, scene, symbols)
     scene%last_sorted = scene%n_items
     call add_points(mechanism, with_masses, nodes, scene)
+    if (mechanism%has_frictions()) call add_stuck_pairs(mechanism, film, symbols, scene)
     associate (shown => mechanism%structure%shown_links())
       call add_labels(mechanism, film, projection, symbols, nodes, shown_by(outlines(:shown), shapes(:shown), scene), scene)
     end associate

@@ -2,18 +2,24 @@
 !> its travel. Some of these pairs are a tube and a rod in it.
 module mech9_slide_places
   use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_rotation, only: turn
+  use mech9_pose, only: pose_type, compose, inverse, transformed
+  use mech9_pair, only: pair_type, pair_motion_type, screw_factors_type
   use mech9_mechanism, only: mechanism_type
   use mech9_film, only: film_type
   use mech9_pair_axes, only: sliding, screwing, turning, free
   use mech9_skeleton, only: skeleton_type, place_type
   implicit none
   private
-  public :: place_slides
+  public :: place_slides, find_pose, carried_to, along_rod
 
   !> Places nearer to each other than this part of the mechanism's size count as one.
   real(wp), parameter :: same = 0.01_wp
   !> The place of the mouth of a tube, as a part of the least distance between the ends.
   real(wp), parameter :: mouth = 0.62_wp
+  !> A guide is lengthened to an end of a stop that is nearer than this multiple of the mechanism's size, or of its travel.
+  real(wp), parameter :: near = 2.0_wp
 
   !> The pins of one link: the places of its other pairs, in the system of the link.
   type :: pins_type
@@ -48,6 +54,7 @@ contains
       end if
       call find_travel(film, skeleton%places(k))
     end do
+    call reach_stops(mechanism, skeleton)
   end subroutine place_slides
 
   !> List the places of the other pairs of a link that turn or are the user's. If there are none, list the places of its
@@ -217,4 +224,134 @@ contains
       place%most = max(place%most, along)
     end do
   end subroutine find_travel
+
+  !> Lengthen the guides of sliding pairs to the ends of their stops, except those that are far away. Tubes become as long as their
+  !> pistons need.
+  subroutine reach_stops(mechanism, skeleton)
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(skeleton_type), intent(inout) :: skeleton  !< places at which the pairs are drawn, with the travel of blocks
+    real(wp) :: along, allowed, least, most
+    integer :: i, end
+    logical :: found
+
+    do i = 1, size(mechanism%stops)
+      associate (stop => mechanism%stops(i), place => skeleton%places(mechanism%stops(i)%coordinate))
+        if (place%kind == turning .or. place%kind == free .or. place%drawn_by > 0) cycle
+        allowed = near*max(skeleton%size, place%most - place%least)
+        least = place%least
+        most = place%most
+        do end = 1, 2
+          if (.not. stop%has_end(end)) cycle
+          call find_travel_to(mechanism%pairs(stop%coordinate)%pair, place, stop%ends(end), along, found)
+          if (place%telescopic) then
+            if (found) call make_room_for_piston(along, place)
+            cycle
+          end if
+          if (.not. found .or. along < least - allowed .or. along > most + allowed) cycle
+          place%least = min(place%least, along)
+          place%most = max(place%most, along)
+        end do
+      end associate
+    end do
+  end subroutine reach_stops
+
+  !> Compute the travel of the block of a sliding pair at a value of its coordinate.
+  subroutine find_travel_to(pair, place, q, along, found)
+    class(pair_type), intent(in) :: pair     !< the pair
+    type(place_type), intent(in) :: place    !< place and travel of the pair
+    real(wp), intent(in) :: q                !< the coordinate [rad, m]
+    real(wp), intent(out) :: along           !< from the place of the block in the first frame, along the axis of the guide [m]
+    logical, intent(out) :: found            !< the pair has this value
+    type(pose_type) :: pose
+    real(wp) :: tangent(3)
+    integer :: guide
+
+    along = 0.0_wp
+    call find_pose(pair, q, pose, tangent, found)
+    if (.not. found) return
+    guide = 3 - place%carrier
+    along = dot_product(carried_to(pose, place) - place%points(:, guide), place%axes(:, guide))
+  end subroutine find_travel_to
+
+  !> Lengthen a tube so that a piston on the rod, which is at the mouth at one end of a stop, stays in the tube wherever the rod goes.
+  pure subroutine make_room_for_piston(along, place)
+    real(wp), intent(in) :: along              !< travel of the mouth along the rod at the end of the stop [m]
+    type(place_type), intent(inout) :: place   !< place and travel of the pair
+    real(wp), parameter :: spare = 0.1_wp, largest = 0.92_wp
+    real(wp) :: needed, shortest, shift
+
+    needed = deepest(along, place) + spare*norm2(place%points(:, 1) - place%pins(:, 1))
+    shortest = norm2(place%points(:, 1) - place%pins(:, 1)) + shortest_rod(place)
+    shift = needed - norm2(place%points(:, 1) - place%pins(:, 1))
+    if (shift <= 0.0_wp .or. needed > largest*shortest) return
+    shift = shift*sign(1.0_wp, dot_product(place%points(:, 1) - place%pins(:, 1), place%axes(:, 1)))
+    place%points = place%points + shift*place%axes
+  end subroutine make_room_for_piston
+
+  !> The part of a rod outside its tube where this is least [m].
+  pure real(wp) function shortest_rod(place)
+    type(place_type), intent(in) :: place   !< place and travel of the pair
+    real(wp) :: rod
+
+    rod = dot_product(place%pins(:, 2) - place%points(:, 2), place%axes(:, 2))
+    shortest_rod = min(abs(rod - place%least), abs(rod - place%most))
+  end function shortest_rod
+
+  !> How deep in the tube a place of the rod is where the rod is farthest in; negative where it never goes into the tube [m].
+  pure real(wp) function deepest(along, place)
+    real(wp), intent(in) :: along            !< the place: travel of the mouth along the rod [m]
+    type(place_type), intent(in) :: place    !< place and travel of the pair
+    real(wp) :: rod
+
+    rod = dot_product(place%pins(:, 2) - place%points(:, 2), place%axes(:, 2))
+    deepest = abs(rod - along) - shortest_rod(place)
+  end function deepest
+
+  !> Compute the pose of the moving link in the reference link at a value of the coordinate, and the direction in which it moves.
+  subroutine find_pose(pair, q, pose, tangent, found)
+    class(pair_type), intent(in) :: pair       !< the pair
+    real(wp), intent(in) :: q                  !< the coordinate [rad, m]
+    type(pose_type), intent(out) :: pose       !< of the moving link in the reference link
+    real(wp), intent(out) :: tangent(3)        !< rate of the moving frame's origin by q, in the axes of the reference link [m/rad, 1]
+    logical, intent(out) :: found              !< the pair has this value
+    type(screw_factors_type) :: factors
+    type(pair_motion_type) :: motion
+    type(error_type), allocatable :: err
+    logical :: is_screw
+
+    tangent = 0.0_wp
+    call pair%as_screw(factors, is_screw)
+    call pair%evaluate(q, motion, err)
+    found = .not. allocated(err)
+    if (.not. found) return
+    if (is_screw) then
+      pose = motion%pose
+    else
+      pose = compose(compose(factors%before, motion%pose), factors%after)
+    end if
+    tangent = turn(factors%before%r, motion%v)
+  end subroutine find_pose
+
+  !> The place of the point that carries the symbol of a pair in its other link, at a pose of the moving link in the reference link.
+  pure function carried_to(pose, place) result(at)
+    type(pose_type), intent(in) :: pose      !< of the moving link in the reference link
+    type(place_type), intent(in) :: place    !< place of the pair
+    real(wp) :: at(3)
+
+    if (place%carrier == 2) then
+      at = transformed(pose, place%points(:, 2))
+    else
+      at = transformed(inverse(pose), place%points(:, 1))
+    end if
+  end function carried_to
+
+  !> Whether a place of a rod is on the rod, and never behind the bottom of its tube.
+  pure logical function along_rod(along, place)
+    real(wp), intent(in) :: along            !< the place: travel of the mouth along the rod [m]
+    type(place_type), intent(in) :: place    !< place and travel of the pair
+    real(wp) :: rod
+
+    rod = dot_product(place%pins(:, 2) - place%points(:, 2), place%axes(:, 2))
+    along_rod = (rod - along)*rod > 0.0_wp .and. deepest(along, place) < norm2(place%points(:, 1) - place%pins(:, 1))
+  end function along_rod
 end module mech9_slide_places

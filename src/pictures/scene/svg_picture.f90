@@ -6,7 +6,8 @@ module mech9_svg_picture
   use mech9_film, only: film_type
   use mech9_film_clock, only: clock_decimals, clock_text
   use mech9_projection, only: projection_type
-  use mech9_scene, only: scene_type, item_type, closed_path, facing_path, mark, label, in_pairs
+  use mech9_scene, only: scene_type, item_type, closed_path, facing_path, mark, label, in_pairs, in_stop, in_pushed, &
+                         as_stuck
   use mech9_drawing, only: drawing_type, draw_frame, drawing_order, outline_of
   use mech9_picture_style, only: styles, colour_of, style_sheet, mark_svg
   use mech9_page, only: page_type
@@ -14,8 +15,8 @@ module mech9_svg_picture
   use mech9_xml_text, only: xml_text, decimal
   implicit none
   private
-  public :: save_sketch, put_picture, put_opening, put_item, put_surroundings, opening_of, label_svg, path_of, place_of, &
-            scale_length
+  public :: save_sketch, put_picture, put_opening, put_item, put_surroundings, opening_of, tooltip_of, label_svg, path_of, &
+            place_of, scale_length
 
   !> The length of the axes in the corner [px], and the distance of their names as a multiple of this length.
   real(wp), parameter, public :: axis_length = 26.0_wp, beyond_axis = 1.36_wp
@@ -44,13 +45,13 @@ contains
   end subroutine save_sketch
 
   !> Append the picture of one frame to a page.
-  subroutine put_picture(title, scene, film, projection, frame, all_axes, page)
+  subroutine put_picture(title, scene, film, projection, frame, is_turned, page)
     character(len=*), intent(in) :: title           !< title of the mechanism, any text
     type(scene_type), intent(in) :: scene           !< nodes and items of the picture
     type(film_type), intent(in) :: film             !< poses and values at the outputs of the run
     type(projection_type), intent(in) :: projection !< from space to the page
     integer, intent(in) :: frame                    !< number of the frame in the film
-    logical, intent(in) :: all_axes                 !< draw also an axis that points to the viewer, for a picture that can be turned
+    logical, intent(in) :: is_turned                !< a script turns and moves it: it needs all axes, and the items of other frames
     type(page_type), intent(inout) :: page          !< text to which the picture is appended
     type(drawing_type) :: drawing
     integer, allocatable :: order(:)
@@ -61,10 +62,11 @@ contains
     order = drawing_order(scene, drawing)
     call page%line('<g id="scene">')
     do i = 1, size(order)
-      call put_item(scene%items(order(i)), order(i), drawing, projection%symbol, page)
+      if (is_turned .or. scene%items(order(i))%state == 0) &
+        call put_item(scene%items(order(i)), order(i), drawing, projection%symbol, page)
     end do
     call page%line('</g>')
-    call put_surroundings(title, projection, all_axes, page)
+    call put_surroundings(title, projection, is_turned, page)
     if (film%n_frames > 1) &
       call page%line('<text class="small" id="time" x="90" y="'//decimal(projection%height - 12.0_wp)//'">'// &
                      clock_text(film%times(frame), clock_decimals(film))//'</text>')
@@ -99,12 +101,12 @@ contains
     select case (item%shape)
     case (mark)
       call page%put(' transform="translate('//place_of(item, drawing)//') scale('//decimal(symbol)//')">'// &
-                    mark_svg(item%style, item%shift)//'</g>')
+                    tooltip_of(item)//mark_svg(item%style, item%shift)//'</g>')
     case (label)
       call page%put(' transform="translate('//place_of(item, drawing)//')">'//label_svg(item)//'</g>')
     case default
       path = '<path d="'//path_of(item, outline_of(item, drawing, symbol))//'"'
-      call page%put('>'//path//'/>')
+      call page%put('>'//tooltip_of(item)//path//'/>')
       if (styles(item%style)%has_edge) call page%put(path//' class="i"/>')
       call page%put('</g>')
     end select
@@ -120,8 +122,24 @@ contains
 
     tag = '<g class="'//classes_of(item)//'" data-i="'//to_text(number)//'"'
     if (item%shape == label) tag = '<g data-i="'//to_text(number)//'"'
-    if (allocated(item%text) .and. item%shape /= label) tag = tag//' data-joint="'//item%text//'"'
+    if (allocated(item%text) .and. item%shape /= label .and. .not. has_tooltip(item)) tag = tag//' data-joint="'//item%text//'"'
   end function opening_of
+
+  !> Whether a browser shows the text of an item under the pointer: it is a stop or a mark of friction.
+  pure logical function has_tooltip(item)
+    type(item_type), intent(in) :: item  !< one thing to draw
+
+    has_tooltip = allocated(item%text) .and. any(item%style == [in_stop, in_pushed, as_stuck])
+  end function has_tooltip
+
+  !> The text that a browser shows under the pointer, as a title; empty for most items.
+  pure function tooltip_of(item) result(svg)
+    type(item_type), intent(in) :: item  !< one thing to draw
+    character(len=:), allocatable :: svg
+
+    svg = ''
+    if (has_tooltip(item)) svg = '<title>'//xml_text(item%text)//'</title>'
+  end function tooltip_of
 
   !> The SVG of a label at the place (0, 0).
   pure function label_svg(item) result(svg)

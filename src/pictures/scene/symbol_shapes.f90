@@ -11,7 +11,7 @@ module mech9_symbol_shapes
                          in_pin, in_pin_end, in_cross, in_thread, in_damper, as_free
   implicit none
   private
-  public :: add_block, add_pin, add_led_link, add_whole_joint, find_plane, block_half, guide_more
+  public :: add_block, add_pin, add_led_link, add_whole_joint, find_plane, across, block_half, guide_more
 
   !> Sizes on the page [px].
   real(wp), parameter :: block_half = 13.0_wp, guide_more = 9.0_wp, pin_half = 10.0_wp, pin_radius = 5.0_wp, square_half = 7.0_wp, &
