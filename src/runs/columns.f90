@@ -489,7 +489,7 @@ contains
     end if
     self%count = self%count + 1
     self%names(self%count)%text = name
-    self%units(self%count)%text = unit
+    self%units(self%count)%text = trim(unit)
     self%long_names(self%count)%text = name
     if (present(long_name)) self%long_names(self%count)%text = long_name
   end subroutine append
