@@ -2,6 +2,7 @@
 module mech9_kept_rows
   use mech9_kinds, only: wp, long
   use mech9_text, only: string_type, nearest_name
+  use mech9_motion_event, only: motion_events_type
   implicit none
   private
   public :: kept_rows_type
@@ -13,6 +14,7 @@ module mech9_kept_rows
     character(len=:), allocatable :: title
     type(string_type), allocatable :: names(:), units(:)  !< headings and units of the columns, time first
     real(wp), allocatable :: rows(:, :)                   !< rows(:, i): row i; `count` of them are filled
+    type(motion_events_type) :: events                    !< those of the run
     integer :: count = 0                                  !< how many rows are kept
     integer :: stride = 1                                 !< one row of so many is kept
     integer :: seen = 0                                   !< how many rows were taken, with those not kept

@@ -12,7 +12,8 @@ module mech9_dynamic_report
   use mech9_run_outcome, only: run_outcome_type
   use mech9_integrator, only: integration_statistics_type
   use mech9_simulation, only: coordinate_change_type
-  use mech9_motion_event, only: motion_events_type, event_impact, event_close, event_stick, event_slip, event_lift
+  use mech9_motion_event, only: motion_events_type
+  use mech9_event_words, only: event_sentence
   use mech9_free_simulation, only: free_simulation_type
   use mech9_run_words, only: duration, each
   use mech9_run_facts, only: method_of
@@ -89,21 +90,7 @@ contains
       if (i == events%count .and. i > printed_events + 1) &
         write (unit, '(a)') counted(i - printed_events - 1, 'more event')//'; the option --report writes all of them'
       associate (event => events%items(i))
-        write (unit, '(a)', advance='no') 't = '//to_text(event%t, 8)//' s: '//trim(event%group)//' '//to_text(event%number)
-        select case (event%kind)
-        case (event_stick)
-          write (unit, '(a)') ' sticks'
-        case (event_slip)
-          write (unit, '(a)') ' slips'
-        case (event_impact)
-          write (unit, '(a)') ' is hit, impulse '//to_text(event%impulse, 4)
-        case (event_close)
-          write (unit, '(a)') ' closes'
-        case (event_lift)
-          write (unit, '(a)') ' lifts off'
-        case default
-          write (unit, '(a)') ' opens'
-        end select
+        write (unit, '(a)') 't = '//to_text(event%t, 8)//' s: '//event_sentence(event)
       end associate
     end do
   end subroutine print_events

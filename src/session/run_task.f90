@@ -76,6 +76,8 @@ contains
       call list_run_facts(motion, outcome, facts)
       call results%write_facts(facts, diagnostics%code())
       if (associated(hdf5)) call report%write_end(hdf5, motion)
+      call results%mark_events(motion%simulation%events)
+      if (present(kept)) kept%events = motion%simulation%events
       call end_run(options, pictures, model, source, results, diagnostics)
       if (.not. reported) return
       call compose_report(json, model, diagnostics, results%table_path, facts, run)

@@ -152,6 +152,12 @@ def test_plot(session):
     checks.true('zzz' in said[2], 'plot: a name that is not there', said[2])
 
 
+def test_plot_marks_events(checks, mech9d, tmp_path):
+    Session(checks, mech9d, 'four_bar_stop', os.fspath(tmp_path)).after_run('plot run.svg:q4', 'done')
+    script = text_of(os.path.join(tmp_path, 'run.gp'))
+    checks.true(re.search(r"^set label 't = \S+ s: stop 1 is hit", script, re.M) is not None, 'plot: impacts are marked', script[:2000])
+
+
 def test_study(session):
     """A study of the data file is made where it has one, and told; nothing is written."""
     path = os.path.join(session.folder, 'arm.nml')

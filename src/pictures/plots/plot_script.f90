@@ -9,6 +9,8 @@ module mech9_plot_script
   use mech9_plot_request, only: curve_type
   use mech9_plot_data, only: plot_data_type
   use mech9_plot_panels, only: panels_of, axis_label, over_time
+  use mech9_motion_event, only: motion_events_type
+  use mech9_event_marks, only: event_marks, event_key, no_marks
   implicit none
   private
   public :: picture_script, terminal_script
@@ -23,16 +25,19 @@ module mech9_plot_script
 contains
 
   !> The script of a picture. Users can run it again, and its first line tells how.
-  pure function picture_script(title, curves, data, picture, script, table) result(text)
+  pure function picture_script(title, curves, data, picture, script, table, events) result(text)
     character(len=*), intent(in) :: title      !< title of the mechanism
     type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
     type(plot_data_type), intent(in) :: data   !< rows and columns that are plotted
     character(len=*), intent(in) :: picture    !< name of the file of the picture, without its folder
     character(len=*), intent(in) :: script     !< name of the file of the script, without its folder
     character(len=*), intent(in) :: table      !< file with the results, without its folder; empty: the script holds the data
-    character(len=:), allocatable :: text, source
+    type(motion_events_type), intent(in) :: events   !< those of the run, which are marked over the time
+    character(len=:), allocatable :: text, source, key
     type(string_type), allocatable :: lines(:)
+    type(curve_type), allocatable :: own(:)
     integer :: panels(size(curves)), i, width, height
+    logical :: marked
 
     panels = panels_of(curves, data%names, data%units)
     call find_size(curves, panels, data, width, height)
@@ -50,10 +55,20 @@ contains
     if (maxval(panels) == 1) then
       text = text//'set title '//quoted_lines(lines)//line_end
     else
-      text = text//stack(lines, curves, panels, data)
+      text = text//stack(lines, curves, panels, data, events%count > 0)
     end if
+    marked = .false.
+    key = ''
     do i = 1, maxval(panels)
-      text = text//panel(pack(curves, panels == i), data, source, stacked=maxval(panels) > 1, last=i == maxval(panels))
+      own = pack(curves, panels == i)
+      if (events%count > 0 .and. (over_time(own(1)) .neqv. marked)) then
+        marked = .not. marked
+        if (marked) text = text//event_marks(events, data%extent(own%x))
+        if (marked) key = event_key(events, data%extent(own%x))
+        if (.not. marked) text = text//no_marks
+      end if
+      text = text//panel(own, data, source, stacked=maxval(panels) > 1, last=i == maxval(panels))//key//line_end
+      key = ''
     end do
     if (maxval(panels) > 1) text = text//'unset multiplot'//line_end
     text = text//'unset output'//line_end
@@ -76,7 +91,7 @@ contains
       own = pack(curves, panels == i)
       ! a dumb terminal cannot turn the label of the upward axis, so that it stands above the panel
       text = text//'set title '//quoted(axis_label(own%y, data%names, data%units))//line_end// &
-             axes(own, data, '')//curve_commands(own, data, data_block, with='lines')
+             axes(own, data, '')//curve_commands(own, data, data_block, with='lines')//line_end
     end do
   end function terminal_script
 
@@ -153,13 +168,15 @@ contains
   end function inline_data
 
   !> The commands for panels above each other. Their axes have one length whatever their labels are.
-  pure function stack(lines, curves, panels, data) result(text)
+  pure function stack(lines, curves, panels, data, with_events) result(text)
     type(string_type), intent(in) :: lines(:)  !< lines of the title
     type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
     integer, intent(in) :: panels(:)           !< number of the panel of each curve
     type(plot_data_type), intent(in) :: data   !< rows and columns that are plotted
+    logical, intent(in) :: with_events         !< the key has the kinds of events
     character(len=:), allocatable :: text
     type(curve_type), allocatable :: own(:)
+    integer, parameter :: longest_kind = 6
     integer :: i, left, right
 
     left = 12
@@ -168,6 +185,7 @@ contains
       own = pack(curves, panels == i)
       left = max(left, 6 + letters_needed(data%extent(own%y)))
       if (size(own) > 1) right = max(right, 6 + longest_name(own, data))
+      if (with_events .and. over_time(own(1))) right = max(right, 6 + longest_kind)
     end do
     text = 'set multiplot layout '//to_text(maxval(panels))//',1 title '//quoted_lines(lines)//' margins char '// &
            to_text(left)//',char '//to_text(right)//',char 4,char '//to_text(2 + size(lines))//' spacing char '// &
@@ -186,7 +204,7 @@ contains
     end do
   end function longest_name
 
-  !> The commands for one panel: its axes and its curves.
+  !> The commands for one panel: its axes and its curves, without the end of the last line.
   pure function panel(curves, data, source, stacked, last) result(text)
     type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
     type(plot_data_type), intent(in) :: data   !< rows and columns that are plotted
@@ -259,7 +277,7 @@ contains
     if ((size > 0.0_wp .and. size < smallest_short) .or. size >= largest_short) letters_needed = letters_needed + exponent
   end function letters_needed
 
-  !> The plot command.
+  !> The plot command, without the end of its line.
   pure function curve_commands(curves, data, source, with) result(text)
     type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
     type(plot_data_type), intent(in) :: data   !< rows and columns that are plotted
@@ -281,7 +299,6 @@ contains
       end if
       if (i < size(curves)) text = text//', \'//line_end//'     '
     end do
-    text = text//line_end
   end function curve_commands
 
   !> The name of a curve in the key.
