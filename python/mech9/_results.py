@@ -18,6 +18,13 @@ if TYPE_CHECKING:
     from ._mechanism import Mechanism
     from ._pictures import Picture
 
+# the marks of events in plots: of more than this number there are short ticks in place of lines
+MOST_LINES = 40
+EVENT_STYLES: dict[str, dict[str, Any]] = {
+    'impact': {'marker': '^', 'color': '#d55e00'}, 'close': {'marker': 's', 'color': '#000000'},
+    'open': {'marker': 's', 'color': '#000000', 'fillstyle': 'none'}, 'lift': {'marker': '^', 'color': '#d55e00', 'fillstyle': 'none'},
+    'stick': {'marker': 'o', 'color': '#0072b2'}, 'slip': {'marker': 'o', 'color': '#0072b2', 'fillstyle': 'none'}}
+
 
 class _Memory:
     """The table of results of the library, which lives as long as an array refers to it."""
@@ -127,7 +134,7 @@ class Results(Mapping[str, np.ndarray]):
         write_run(self._memory.handle, mechanism, path)
 
     def plot(self, *columns: str) -> Any:
-        """Columns over the time, or, of two columns, the second over the first: a matplotlib Figure."""
+        """Columns over the time, with marks of events, or, of two columns, the second over the first: a matplotlib Figure."""
         if not columns:
             raise UsageError('name the columns to plot', 2)
         from matplotlib.figure import Figure
@@ -141,8 +148,20 @@ class Results(Mapping[str, np.ndarray]):
             for name in columns:
                 axes.plot(self.t, self[name], label=f'{name} [{self.units[name]}]')
             axes.set_xlabel(f't [{self.units["t"]}]')
+            self._mark_events(axes)
             axes.legend()
         return figure
+
+    def _mark_events(self, axes: Any) -> None:
+        """Mark events over the time as the option --plot does: a line at each, or many short ticks, and on the axis a symbol of its kind."""
+        events = self.events
+        top, size = (1.0, 6) if len(events) <= MOST_LINES else (0.03, 3)
+        for kind, style in EVENT_STYLES.items():
+            times = [event['time'] for event in events if event['kind'] == kind]
+            if times:
+                along = axes.get_xaxis_transform()
+                axes.vlines(times, 0, top, colors='0.7', linestyles='dashed', linewidth=0.8, zorder=0.5, transform=along)
+                axes.plot(times, [0] * len(times), linestyle='none', clip_on=False, transform=along, label=kind, markersize=size, **style)
 
     def __getitem__(self, name: str) -> np.ndarray:
         """A column (rows,), read-only; it shares the memory of the table."""

@@ -60,3 +60,15 @@ def test_a_study_of_the_restitution(checks, ball):
     except ImportError:
         pytest.skip('xarray is not installed')
     checks.equal(s.sizes['run'], 3, 'three runs')
+
+
+def test_events_are_marked_in_plots(checks, ball):
+    pytest.importorskip('matplotlib', reason='matplotlib is not installed: plots are not tested')
+    ball['stop(1).restitution'] = 0.5
+    run = ball.dynamics(end=3, intervals=100)
+    lines = {line.get_label(): line for line in run.plot('q1').axes[0].lines}
+    for kind in ('impact', 'close'):
+        times = [event['time'] for event in run.events if event['kind'] == kind]
+        checks.equal(list(lines[kind].get_xdata()), times, f'{kind}: a symbol at each')
+    checks.true('open' not in lines, 'no other kinds')
+    checks.equal([line.get_label() in ('impact', 'close') for line in run.plot('q1', 'S1').axes[0].lines], [False], 'a path has no marks')
