@@ -83,10 +83,10 @@ if(MECH9_SHARED)
   install(FILES "${PROJECT_BINARY_DIR}/install/mech9.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig" COMPONENT development)
 endif()
 
-# The Python package holds the library and the programs beside its modules.
+# The Python package holds the library and the programs, as one file, beside its modules.
 if(MECH9_PYTHON)
   install(TARGETS mech9_shared LIBRARY DESTINATION mech9 COMPONENT python NAMELINK_SKIP)
-  install(TARGETS mech9k mech9d RUNTIME DESTINATION mech9/bin COMPONENT python)
+  install(TARGETS mech9_both RUNTIME DESTINATION mech9/bin COMPONENT python)
 endif()
 
 if(MECH9_DEB)

@@ -1,5 +1,13 @@
 # The libraries the project stands on, all from Debian.
-find_package(LAPACK REQUIRED)
+# The Python package has what it calls of LAPACK in itself, where there is a static one, not all of it.
+if(MECH9_PYTHON)
+  set(BLA_STATIC ON)
+  find_package(LAPACK QUIET)
+  set(BLA_STATIC OFF)
+endif()
+if(NOT LAPACK_FOUND)
+  find_package(LAPACK REQUIRED)
+endif()
 
 # SUNDIALS, versions 6 (Debian 12) and 7 (Debian 13). Its own CMake package names Fortran modules at a
 # path that does not exist, and looks for PETSc and MPI: its files are found one by one.

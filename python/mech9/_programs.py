@@ -7,7 +7,8 @@ from typing import NoReturn
 
 
 def _run(name: str) -> NoReturn:
-    program = os.path.join(os.path.dirname(os.path.abspath(__file__)), 'bin', name)
+    # one file, which is the program by whose name it is called
+    program = os.path.join(os.path.dirname(os.path.abspath(__file__)), 'bin', 'mech9')
     if not os.path.exists(program):
         sys.exit(f'{name} is not part of this installation')
     os.execv(program, [name, *sys.argv[1:]])
