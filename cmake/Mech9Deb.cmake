@@ -10,9 +10,11 @@ install(DIRECTORY python/mech9 DESTINATION lib/python3/dist-packages COMPONENT p
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGING_INSTALL_PREFIX "/usr")
+# each package has its own first line
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")
 set(CPACK_PACKAGE_VERSION "${PROJECT_VERSION}")
 set(CPACK_PACKAGE_CONTACT "The MECH9 authors <mech9@example.org>")
-set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
+set(CPACK_DEBIAN_PACKAGE_RELEASE "1~${MECH9_DEB}")
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
@@ -31,7 +33,7 @@ function(mech9_deb component package section summary text)
   set(CPACK_DEBIAN_${upper}_PACKAGE_SECTION ${section} PARENT_SCOPE)
   set(CPACK_COMPONENT_${upper}_DESCRIPTION "${summary}\n${text}" PARENT_SCOPE)
   file(WRITE "${folder}/${package}/changelog.Debian"
-    "mech9 (${PROJECT_VERSION}-1) unstable; urgency=medium\n\n  * See CHANGELOG.md.\n\n -- ${CPACK_PACKAGE_CONTACT}  ${today}\n")
+    "mech9 (${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE}) unstable; urgency=medium\n\n  * See CHANGELOG.md.\n\n -- ${CPACK_PACKAGE_CONTACT}  ${today}\n")
   execute_process(COMMAND gzip -9nf "${folder}/${package}/changelog.Debian" COMMAND_ERROR_IS_FATAL ANY)
   configure_file(LICENSE "${folder}/${package}/copyright" COPYONLY)
   install(FILES "${folder}/${package}/changelog.Debian.gz" "${folder}/${package}/copyright"
@@ -56,8 +58,9 @@ mech9_deb(python3 python3-mech9 python "kinematics and dynamics of spatial mecha
   "The package mech9 analyses spatial mechanisms with closed chains and
 returns NumPy arrays.")
 
-set(same_version "= ${PROJECT_VERSION}-1")
+set(same_version "= ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE}")
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SUGGESTS "gnuplot-nox, graphviz, mech9-mpi")
+set(CPACK_DEBIAN_MPI_PACKAGE_DEPENDS "openmpi-bin")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
   "libmech9-0 (${same_version}), gfortran, liblapack-dev, libsundials-dev, libsundials-fortran-dev, libhdf5-dev, libedit-dev, libexpat1-dev, libnlopt-dev")
 set(CPACK_DEBIAN_PYTHON3_PACKAGE_DEPENDS "libmech9-0 (${same_version}), python3 (>= 3.9), python3-numpy")
@@ -70,6 +73,12 @@ file(WRITE "${folder}/shlibs" "libmech9 0 libmech9-0 (>= ${PROJECT_VERSION})\n")
 file(WRITE "${folder}/triggers" "activate-noawait ldconfig\n")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA "${folder}/shlibs;${folder}/triggers")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+
+# Python's compiled modules, which belong to no package, are made with it and go with it.
+file(WRITE "${folder}/postinst" "#!/bin/sh\nset -e\nif [ \"$1\" = configure ]; then py3compile -p python3-mech9; fi\n")
+file(WRITE "${folder}/prerm" "#!/bin/sh\nset -e\npy3clean -p python3-mech9\n")
+set(CPACK_DEBIAN_PYTHON3_PACKAGE_CONTROL_EXTRA "${folder}/postinst;${folder}/prerm")
+set(CPACK_DEBIAN_PYTHON3_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
 # Debian wants manual pages compressed.
 install(CODE "execute_process(COMMAND gzip -9nf \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}/man1/mech9k.1\"

@@ -23,7 +23,7 @@ foreach(letter k d)
   endif()
 endforeach()
 
-set(link_modules "${PROJECT_BINARY_DIR}/modules")
+set(link_modules "${MECH9_MODULES_DIR}")
 set(link_library "${PROJECT_BINARY_DIR}/libmech9.a")
 set(link_programs "${MECH9_PROGRAMS_DIR}")
 configure_file(cmake/mech9-link.in bin/mech9-link @ONLY
@@ -56,7 +56,7 @@ if(MECH9_LTO_NO_LINK)
 endif()
 install(TARGETS mech9 EXPORT mech9Targets DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT development)
 # .smod: users' submodules need those of their hooks
-install(DIRECTORY "${PROJECT_BINARY_DIR}/modules/" DESTINATION "${modules_dir}" COMPONENT development
+install(DIRECTORY "${MECH9_MODULES_DIR}/" DESTINATION "${modules_dir}" COMPONENT development
   FILES_MATCHING PATTERN "*.mod" PATTERN "*.smod")
 install(DIRECTORY user_procs DESTINATION "${data_dir}" COMPONENT development)
 install(FILES LICENSE README.md CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT programs)

@@ -10,7 +10,8 @@ option(MECH9_THREADS "make the runs of a study in threads by OpenMP, where it is
 option(MECH9_MPI "build mech9k-mpi and mech9d-mpi, studies in several processes" OFF)
 option(MECH9_SHARED "build libmech9.so, the library for C, C++ and Python" OFF)
 option(MECH9_PYTHON "install the library and the programs into the Python package mech9" OFF)
-option(MECH9_DEB "prepare Debian packages, which cpack makes (packaging/deb)" OFF)
+set(MECH9_COMPILED "" CACHE PATH "a build folder whose objects and modules of the library are linked, in place of compiling them (packaging/)")
+set(MECH9_DEB "" CACHE STRING "prepare Debian packages of this release of Debian, deb12 or deb13, which cpack makes (packaging/deb)")
 option(MECH9_IMPORT "import robots from XML by expat, where it is found" ON)
 option(MECH9_LIMITS "keep limits and find what is not a sum of squares by NLopt, where it is found" ON)
 

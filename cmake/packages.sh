@@ -2,13 +2,15 @@
 #   . cmake/packages.sh && need_packages build pictures tests
 # Does nothing, quickly and without network, when all are there.
 
-# The lists: what a build needs, what draws the pictures, what the tests need besides, and the browser that shows them
-# pages, without which those are not tested. libc6-dev is only a recommendation of gcc, so that a minimal system can have
-# a compiler that cannot link.
+# The lists: what a build needs, what draws the pictures, what the tests need besides, the browser that shows them pages, without which
+# those are not tested, what makes Debian packages, and what judges and tries them. libc6-dev is only a recommendation of gcc, so that
+# a minimal system can have a compiler that cannot link.
 packages_build="gfortran libc6-dev cmake ninja-build liblapack-dev libsundials-dev libsundials-fortran-dev libedit-dev libhdf5-dev libexpat1-dev libnlopt-dev"
 packages_pictures="gnuplot-nox graphviz"
 packages_tests="python3 python3-pytest python3-numpy python3-h5py python3-xarray python3-h5netcdf python3-pandas hdf5-tools groff-base libopenmpi-dev openmpi-bin"
 packages_browser="chromium"
+packages_packages="libopenmpi-dev openmpi-bin dpkg-dev file"
+packages_trials="lintian debootstrap python3-venv"
 
 # The packages among the arguments that are not installed.
 missing_packages() {
@@ -26,7 +28,7 @@ as_root() {
   if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo "$@"; fi
 }
 
-# Install what is missing of the named lists (build, pictures, tests, browser).
+# Install what is missing of the named lists (build, pictures, tests, browser, packages, trials).
 need_packages() {
   local list wanted="" missing
   for list in "$@"; do
@@ -35,6 +37,8 @@ need_packages() {
       pictures) wanted="$wanted $packages_pictures" ;;
       tests) wanted="$wanted $packages_tests" ;;
       browser) wanted="$wanted $packages_browser" ;;
+      packages) wanted="$wanted $packages_packages" ;;
+      trials) wanted="$wanted $packages_trials" ;;
       *) echo "need_packages: no list named $list" >&2; return 1 ;;
     esac
   done
