@@ -40,6 +40,10 @@ SPRING_AT_PIN = """
 def sliding(groups):
     """The coordinates of slides, by their numbers, and the couplings whose forces act along slides, as C1."""
     slides = {pair['coordinate'][0] for group, pair in groups if group == 'pair' and pair['kind'][0] in ('prismatic', 'path')}
+    joints = {'free': 3, 'planar': 2}        # they slide by their first coordinates
+    for group, pair in groups:
+        if group == 'pair' and 'coordinates' in pair:
+            slides |= set(pair['coordinates'][:joints.get(pair['kind'][0], 0)])
     couplings = [items for group, items in groups if group == 'coupling']
     return slides | {f'C{i}' for i, items in enumerate(couplings, 1) if items['coordinates'][-1] in slides}
 
@@ -61,7 +65,7 @@ def scaled(groups, s):
               'pair': {'point': 1, 'moving_point': 1, 'pitch': 1},
               'coupling': {'radius': 1, 'radii': 1, 'pitch': 1},
               'spring': {'position': 1, 'second_position': 1, 'free_length': 1},
-              'friction': {'radius': 1, 'face_radius': 1, 'arm': 1},
+              'friction': {'radius': 1, 'face_radius': 1, 'arm': 1}, 'contact': {'origin': 1, 'radius': 1, 'other_radius': 1},
               'force': {'position': 1, 'force': 1}, 'torque': {'torque': 2}}
     along = {'initial': {'position': 1, 'velocity': 1},
              'drive': {'coefficients': 1, 'mean': 1, 'amplitude': 1, 'values': 1},

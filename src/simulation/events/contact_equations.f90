@@ -101,7 +101,7 @@ contains
           speed = place%speed
           equations%still(i) = at_rest*speed + epsilon(speed)*plan%length/duration
           equations%round_off(i) = round_off_of_rates*speed + epsilon(speed)*plan%length/duration
-          ! what integration leaves in the rate of a closed gap is no impact
+          ! the rate that integration leaves at a closed gap is no impact
           if (contacts(i)%held) equations%round_off(i) = equations%round_off(i) &
             + still*plan%length*maxval(abs(state%dq(plan%independent))/plan%unit_of(plan%independent))
           equations%rubs = equations%rubs .or. contact%has_friction() .or. .not. contact%is_rigid
