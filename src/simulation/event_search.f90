@@ -138,7 +138,7 @@ contains
 
     associate (system => motion%system, contact => motion%system%model%mechanism%contacts(i))
       if (system%contact%sticks(i)) then
-        value = system%contact%excess(contact, i) - round_off_of_impacts
+        value = system%contact%excess(contact, i) - (limit_of_sticking - 1.0_wp)
       else
         call place_of_contact(contact, system%plan, system%state, place, ball, surface)
         value = -dot_product(place%slip, system%contact%direction(:, i))

@@ -2,6 +2,7 @@
 !> solution.
 module mech9_friction_passing
   use mech9_kinds, only: wp
+  use mech9_integration_tolerances, only: slip_of_errors
   use mech9_error, only: error_type
   use mech9_motion_view, only: link_motion_type
   use mech9_contact, only: contact_place_type
@@ -146,7 +147,7 @@ contains
     real(wp), intent(out) :: t                              !< the time [s]
     logical, intent(out) :: passed                          !< it lies within the step
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    real(wp) :: h, before, x, value, at, least, round_off, size_of_position
+    real(wp) :: h, before, x, value, at, least, round_off, size_of_position, backwards
     integer :: look
     logical :: leaves
 
@@ -166,6 +167,12 @@ contains
       end associate
     end if
     round_off = 16.0_wp*epsilon(h)*size_of_position/abs(h)
+    ! a contact that begins to slide may go back by an error of the time of this event
+    backwards = 0.0_wp
+    associate (time => motion%system%model%request%time)
+      if (what == of_rubbing) backwards = slip_of_errors*size_of_position/max(abs(time%end - time%start), abs(h))
+    end associate
+    if (rate(1) > backwards) backwards = 0.0_wp
     do look = 1, looks
       x = real(look, wp)/looks
       t = from + x*h
@@ -180,7 +187,7 @@ contains
       call value_at(motion, what, i, t, value, err)
       if (allocated(err)) return
       leaves = leaves .and. value >= 0.0_wp
-      passed = value > merge(0.0_wp, round_off, look == looks) .and. .not. leaves
+      passed = value > backwards + merge(0.0_wp, round_off, look == looks) .and. .not. leaves
       if (passed) exit
       before = t
     end do

@@ -286,8 +286,9 @@ def rod(mu, speed):
 def test_a_rod_has_the_paradox_of_painleve(checks, mech9d, tmp_path):
     """1 + 3 cos^2 - 3 mu sin cos is negative from mu = 1.3471506 on, where the friction draws the end into the floor."""
     bound = (1 + 3*0.25)/(3*sin(radians(60))*0.5)
-    for mu, code in ((bound*(1 - 1e-9), 0), (bound*(1 + 1e-9), 6)):
-        _, _, message = go(mech9d, tmp_path, rod(mu, -1.0), 1e-6, 1, code=code)
+    # the rod that falls comes nearer to the bound, so that a motion needs some distance from it
+    for mu, code in ((bound*(1 - 1e-3), 0), (bound*(1 + 1e-9), 6)):
+        _, _, message = go(mech9d, tmp_path, rod(mu, -1.0), 1e-7, 1, code=code)
         if code:
             checks.true('several solutions' in message or 'no solution' in message, 'it is told', message)
     _, events, _ = go(mech9d, tmp_path, rod(2*bound, 1.0), 0.05, 1)
