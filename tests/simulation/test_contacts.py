@@ -197,6 +197,18 @@ def test_a_contact_is_a_stop(checks, mech9d, tmp_path):
     checks.near(by_contact['K1.fn'], by_stop['S1'], 1e-10, 'the same force')
 
 
+def test_a_stop_is_hit_beside_a_contact(checks, mech9d, tmp_path):
+    """A disc that rolls against a stop slips back: the stop takes its velocity, and leaves its spin. It rolls again at v - 2 u/7."""
+    motion, events, _ = go(mech9d, tmp_path, DISC + WEIGHT + TIGHT + start([0, 0.1, 0], [2, 0, 0]) +
+                           "&contact point='C', radius=0.1, friction=0.2 /\n&stop coordinate=1, high=0.5, restitution=0.5 /\n", 2)
+    checks.equal([(event['kind'], event['group']) for event in events],
+                 [('close', 'contact'), ('stick', 'contact'), ('impact', 'stop'), ('slip', 'contact'), ('stick', 'contact')], 'events')
+    rolls = 2*5/7
+    back, slip = -rolls/2, -rolls/2 - rolls
+    checks.near(motion['dq1'][-1], back - 2*slip/7, 1e-9, 'velocity of rolling back')
+    checks.near(events[4]['time'] - events[3]['time'], 2*-slip/(7*0.2*G), 1e-9, 'it slips so long')
+
+
 @pytest.mark.parametrize('friction', [0, 0.3])
 def test_a_coupler_point_meets_a_plane(checks, mech9d, tmp_path, friction):
     """A four-bar by two independent coordinates; impulses of pairs and of the contact change its momentum."""

@@ -208,6 +208,11 @@ contains
       end do
       if (change <= same_direction) exit
     end do
+    ! directions that were not found give no solution
+    if (change > contradiction) then
+      worst = 1
+      return
+    end if
     v = self%outcome()
     size_of_force = maxval(abs(self%force)) + tiny(size_of_force)
     most = 0.0_wp
@@ -233,7 +238,6 @@ contains
           else if (.not. self%moves(i) .and. self%sliding(i) > 0.0_wp) then
             excess = -dot_product(turn, self%direction(:, i)) - round_off_of_forces*(sum(abs(self%b)) + maxval(abs(v)))
             if (excess > 0.0_wp) then
-              if (self%must_slide(i)) wanted = -1
               call take(excess/max(self%w(3*i - 1, 3*i - 1) + self%w(3*i, 3*i), tiny(excess)), &
                         merge(-1, sticks, self%must_slide(i)))
             end if

@@ -168,6 +168,7 @@ contains
         return
       end if
       impulses = reshape(cones%force, shape(impulses))
+      where (abs(impulses) <= round_off_of_impacts*maxval(abs(impulses))) impulses = 0.0_wp
       holds = cones%mode /= opens .and. contacts%is_rigid
     else
       call solve_complementarity(size(contacts), equations%g, (1.0_wp + restitution)*equations%rates, equations%round_off, &
