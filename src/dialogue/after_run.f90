@@ -4,9 +4,10 @@ module mech9_after_run
   use mech9_program_kind, only: dynamics
   use mech9_error, only: error_type
   use mech9_text, only: string_type, lower, join
+  use mech9_path, only: ending_of
   use mech9_diagnostics, only: printable
   use mech9_kept_rows, only: kept_rows_type
-  use mech9_rows_text, only: rows_text, columns_that_fit
+  use mech9_rows_text, only: rows_text, all_rows_text, columns_that_fit, all_digits
   use mech9_run_comparison, only: comparison_type, compare_runs, comparison_text
   use mech9_plot, only: plot_columns
   use mech9_heading, only: new_heading
@@ -33,17 +34,19 @@ module mech9_after_run
     'value you are asked for it; its number from list will do, too. run: run again. done ends.'
   character(len=*), parameter :: help_of_rest = &
     'equilibrium: the position in which the mechanism rests; "equilibrium 30" searches from 30 random positions, too. '// &
-    'modes: frequencies, dampings and shapes of its small vibrations there.'
+    'modes: frequencies, dampings and shapes of its small vibrations there. "equilibrium rest.svg" draws this position, too. '// &
+    'show then gives all digits of the numbers; "show 8" shows rows of the run.'
   character(len=*), parameter :: help_of_study = &
     'study: the runs of the study of this file are made, and told in a summary. The option --study writes them to files.'
 
 contains
 
   !> Read commands about a finished run and carry them out, until one of them asks for more than a look at results.
-  subroutine look_back(conversation, kept, earlier, changed, next, request)
+  subroutine look_back(conversation, kept, earlier, found, changed, next, request)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     type(kept_rows_type), intent(in) :: kept                 !< results of the last run; none where it gave none
     type(kept_rows_type), intent(in) :: earlier              !< results of the run before the last one
+    type(kept_rows_type), intent(in) :: found                !< rows of an equilibrium or of modes since the last run; or none
     logical, intent(in) :: changed                           !< an answer was changed since the last run, so that Enter runs again
     integer, intent(out) :: next                             !< over, again, changing or answering
     character(len=:), allocatable, intent(out) :: request    !< the answer that is wanted: options of the command line
@@ -80,7 +83,11 @@ contains
         if (with_study) call conversation%say(help_of_study)
         call say_columns(conversation, kept)
       case ('show')
-        call show(conversation, kept, rest)
+        if (rest == '' .and. found%count > 0) then
+          write (error_unit, '(a)', advance='no') all_rows_text(found, all_digits)
+        else
+          call show(conversation, kept, rest)
+        end if
       case ('plot')
         call plot(conversation, kept, rest)
       case ('compare')
@@ -104,20 +111,30 @@ contains
   end subroutine look_back
 
   !> Form the options of the command line that give an answer about equilibrium; none where the line is no such request.
-  subroutine ask_for_rest(conversation, word, number, request)
+  subroutine ask_for_rest(conversation, word, more, request)
     class(conversation_type), intent(in) :: conversation     !< the conversation as it stands
     character(len=*), intent(in) :: word                     !< equilibrium or modes
-    character(len=*), intent(in) :: number                   !< the text behind it: a number of random starts, or nothing
+    character(len=*), intent(in) :: more                     !< the text behind it: a number of random starts, a sketch, or nothing
     character(len=:), allocatable, intent(out) :: request    !< the options, with blanks between
+    character(len=len(more)), allocatable :: words(:)
+    character(len=:), allocatable :: starts, sketch
+    integer :: i
 
-    request = '--'//word//' --no-write'
-    if (number == '') return
-    if (word == 'equilibrium' .and. verify(number, '0123456789') == 0) then
-      request = request//' --starts '//number
-    else
-      request = ''
-      call conversation%say(help_of_rest)
-    end if
+    words = words_of(more)
+    starts = ''
+    sketch = ' --no-write'
+    do i = 1, size(words)
+      if (word == 'equilibrium' .and. starts == '' .and. verify(trim(words(i)), '0123456789') == 0) then
+        starts = ' --starts '//trim(words(i))
+      else if (ending_of(trim(words(i))) == 'svg') then
+        sketch = ' --sketch '//trim(words(i))
+      else
+        request = ''
+        call conversation%say(help_of_rest)
+        return
+      end if
+    end do
+    request = '--'//word//starts//sketch
   end subroutine ask_for_rest
 
   !> List the words that can be completed: the commands and the names of the columns.

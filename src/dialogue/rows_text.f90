@@ -5,10 +5,12 @@ module mech9_rows_text
   use mech9_kept_rows, only: kept_rows_type
   implicit none
   private
-  public :: rows_text, all_rows_text, columns_that_fit
+  public :: rows_text, all_rows_text, columns_that_fit, digits_of_summary, all_digits
 
-  !> Width of a column, and columns that fit on 80 letters.
-  integer, parameter :: column_width = 13, columns_that_fit = 6
+  !> Columns that fit on 80 letters.
+  integer, parameter :: columns_that_fit = 6
+  !> Significant digits of rows of a run, of a short table, and of a whole one.
+  integer, parameter :: digits_of_rows = 7, digits_of_summary = 3, all_digits = 17
   character, parameter :: eol = achar(10)
 
 contains
@@ -22,53 +24,67 @@ contains
     integer :: shown
 
     shown = min(last, kept%count)
-    text = block_text(kept, columns, shown)//'(the last '//to_text(shown)//' of '//counted(kept%count, 'row')
+    text = block_text(kept, columns, shown, digits_of_rows)//'(the last '//to_text(shown)//' of '//counted(kept%count, 'row')
     if (kept%stride > 1) text = text//', every '//to_text(kept%stride)//'th of the run'
     text = text//'; '//to_text(size(columns))//' of '//counted(size(kept%names), 'column')//')'//eol
   end function rows_text
 
   !> All rows and columns, as whole lines: blocks of columns one below the other, each behind the first column.
-  pure function all_rows_text(kept) result(text)
+  pure function all_rows_text(kept, digits) result(text)
     type(kept_rows_type), intent(in) :: kept  !< rows that were kept
+    integer, intent(in) :: digits             !< significant digits of each number
     character(len=:), allocatable :: text
-    integer :: first, i
+    integer :: first, i, others
 
     text = ''
-    do first = 2, max(2, size(kept%names)), columns_that_fit - 1
-      text = text//block_text(kept, [1, (i, i=first, min(first + columns_that_fit - 2, size(kept%names)))], kept%count)
+    others = columns_that_fit*width_of(digits_of_rows)/width_of(digits) - 1
+    others = min(others, columns_that_fit - 1)
+    do first = 2, max(2, size(kept%names)), others
+      text = text//block_text(kept, [1, (i, i=first, min(first + others - 1, size(kept%names)))], kept%count, digits)
     end do
   end function all_rows_text
 
   !> Names, units and the last rows of some columns.
-  pure function block_text(kept, columns, shown) result(text)
+  pure function block_text(kept, columns, shown, digits) result(text)
     type(kept_rows_type), intent(in) :: kept  !< rows that were kept
     integer, intent(in) :: columns(:)         !< numbers of the columns
     integer, intent(in) :: shown              !< how many rows
+    integer, intent(in) :: digits             !< significant digits of each number
     character(len=:), allocatable :: text
-    integer :: i, k
+    integer :: i, k, width
 
     text = ''
+    width = width_of(digits)
     do k = 1, size(columns)
-      text = text//at_right(kept%names(columns(k))%text)
+      text = text//at_right(kept%names(columns(k))%text, width)
     end do
     text = text//eol
     do k = 1, size(columns)
-      text = text//at_right(kept%units(columns(k))%text)
+      text = text//at_right(kept%units(columns(k))%text, width)
     end do
     text = text//eol
     do i = kept%count - shown + 1, kept%count
       do k = 1, size(columns)
-        text = text//at_right(to_text(kept%rows(columns(k), i), 7))
+        text = text//at_right(to_text(kept%rows(columns(k), i), digits), width)
       end do
       text = text//eol
     end do
   end function block_text
 
   !> A text in its column, with a blank before it even where it is too long.
-  pure function at_right(text) result(padded)
+  pure function at_right(text, width) result(padded)
     character(len=*), intent(in) :: text  !< the text of one column
+    integer, intent(in) :: width          !< of the column
     character(len=:), allocatable :: padded
 
-    padded = repeat(' ', max(1, column_width - len(text)))//text
+    padded = repeat(' ', max(1, width - len(text)))//text
   end function at_right
+
+  !> The width of a column: a blank, a sign, a point and an exponent beside the digits, but no less than that of 7 digits, which most
+  !> names fit.
+  pure integer function width_of(digits)
+    integer, intent(in) :: digits   !< significant digits of each number
+
+    width_of = max(digits, digits_of_rows) + 6
+  end function width_of
 end module mech9_rows_text

@@ -8,7 +8,7 @@ module mech9_running
   use mech9_command_line, only: command_line_type, parse_command_line
   use mech9_system, only: catch_interrupts, asked_to_end
   use mech9_kept_rows, only: kept_rows_type
-  use mech9_rows_text, only: all_rows_text
+  use mech9_rows_text, only: all_rows_text, digits_of_summary
   use mech9_task, only: task_type
   use mech9_study_processes, only: study_processes_type
   use mech9_session, only: run_file
@@ -29,7 +29,7 @@ contains
     type(command_line_type), intent(in) :: options           !< options of the command line
     character(len=*), intent(in) :: path                     !< the data file of the conversation, or its draft
     integer, intent(out) :: code                             !< exit code of the last run
-    type(kept_rows_type) :: kept, earlier
+    type(kept_rows_type) :: kept, earlier, found
     type(study_processes_type) :: processes
     character(len=:), allocatable :: request
     integer :: next
@@ -39,14 +39,15 @@ contains
     saved_again = .false.
     do
       call run_file(task, options, path, processes, code, kept)
+      found%count = 0
       if (asked_to_end()) exit
       ! Ctrl-C ends the run only, not the conversation
       call catch_interrupts()
       conversation%state = going
       do
-        call look_back(conversation, kept, earlier, changed, next, request)
+        call look_back(conversation, kept, earlier, found, changed, next, request)
         if (next == answering) then
-          call answer(conversation, task, path, changed, request)
+          call answer(conversation, task, path, changed, request, found)
           if (asked_to_end()) next = over
           if (next == over) exit
           call catch_interrupts()
@@ -69,17 +70,17 @@ contains
   end subroutine run_by_turns
 
   !> Give an answer about the mechanism with the values that it has now. Changes since the last run are in the draft.
-  subroutine answer(conversation, task, path, changed, request)
+  subroutine answer(conversation, task, path, changed, request, found)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     class(task_type), intent(in) :: task                     !< computation of the program: kinematics or dynamics
     character(len=*), intent(in) :: path                     !< name of the file that was run
     logical, intent(in) :: changed                           !< something was changed since the last run
     character(len=*), intent(in) :: request                  !< options of the command line
+    type(kept_rows_type), intent(inout) :: found             !< gets the rows of the answer's table; none where it has none
     character(len=len(request)), allocatable :: options_given(:)
     type(string_type), allocatable :: words(:)
     type(command_line_type) :: options
     type(error_type), allocatable :: err
-    type(kept_rows_type) :: found
     type(study_processes_type) :: processes
     character(len=:), allocatable :: file
     integer :: i, code
@@ -99,8 +100,11 @@ contains
     if (allocated(err)) then
       call conversation%say(err%message)
     else
+      found%count = 0
       call run_file(task, options, file, processes, code, found)
-      if (found%count > 0) write (error_unit, '(a)', advance='no') all_rows_text(found)
+      if (found%count == 0) return
+      write (error_unit, '(a)', advance='no') all_rows_text(found, digits_of_summary)
+      call conversation%say('(to three digits; show gives all)')
     end if
   end subroutine answer
 

@@ -16,6 +16,7 @@ module mech9_dynamic_report
   use mech9_event_words, only: event_sentence
   use mech9_free_simulation, only: free_simulation_type
   use mech9_run_words, only: duration, each
+  use mech9_energy_text, only: words_of_energy_change
   use mech9_run_facts, only: method_of
   use mech9_run_report, only: run_report_type
   implicit none
@@ -56,7 +57,8 @@ contains
       ' other runs; tolerances '//to_text(simulation%model%request%solver%relative_tolerance, 2)
     write (unit, '(a)', advance='no') 'largest closure '//to_text(simulation%worst_closure, 3)//' m'
     if (simulation%motion%system%model%request%output%energies) &
-      write (unit, '(a)', advance='no') '; largest change of energy '//to_text(simulation%largest_energy_change, 3)//' J'
+      write (unit, '(a)', advance='no') '; '//words_of_energy_change(simulation%model)//' '// &
+        to_text(simulation%largest_energy_change, 3)//' J'
     write (unit, '(a)') ''
     if (simulation%conditioning%block > 0) write (unit, '(a)') 'least conditioning '// &
       to_text(simulation%conditioning%least, 3)//' at t = '//to_text(simulation%conditioning%t, 6)//' s'

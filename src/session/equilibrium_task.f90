@@ -67,7 +67,7 @@ contains
 
     reported = .false.
     allocate (rest%equilibria(0))
-    if (options%has('animate')) call read_picture_requests(options, model, pictures, err)
+    if (options%has('animate') .or. options%has('sketch')) call read_picture_requests(options, model, pictures, err)
     if (.not. allocated(err)) call rest%assemble(model, err)
     if (.not. (allocated(err) .or. options%has('quiet'))) call print_start_way(error_unit, model%mechanism, rest%way)
     if (.not. allocated(err) .and. options%has('verbose')) call print_making(model, rest%plan)
@@ -81,6 +81,7 @@ contains
       call write_results(options, model, rest%equilibria, forces, diagnostics%sources(1)%text, err, kept)
     end if
     if (allocated(interruption)) call diagnostics%add_error(interruption)
+    if (.not. allocated(err) .and. options%has('sketch')) call sketch_rest(options, model, pictures, rest%equilibria(1), err)
     if (.not. allocated(err) .and. options%has('mode')) call show_mode(options, model, pictures, rest%equilibria(1), err)
     if (allocated(err)) call diagnostics%add_error(err)
     if (.not. options%has('report')) return
@@ -244,6 +245,19 @@ contains
     call file%close()
     if (allocated(file%failure)) err = file%failure
   end subroutine end_file
+
+  !> Draw the position of rest.
+  subroutine sketch_rest(options, model, pictures, equilibrium, err)
+    type(command_line_type), intent(in) :: options          !< the command line
+    type(model_type), intent(in) :: model                   !< the model
+    type(picture_requests_type), intent(in) :: pictures     !< the sketch
+    type(equilibrium_type), intent(in) :: equilibrium       !< the position
+    type(error_type), allocatable, intent(out) :: err       !< allocated if the picture cannot be made
+
+    call pictures%save_start(model, equilibrium%resting%plan, equilibrium%resting%state, err)
+    if (allocated(err) .or. options%has('quiet')) return
+    write (error_unit, '(2a)') 'sketch of the position of rest: ', pictures%sketch
+  end subroutine sketch_rest
 
   !> Draw one mode as a moving picture.
   subroutine show_mode(options, model, pictures, equilibrium, err)

@@ -210,8 +210,9 @@ contains
         call refuse(tester, start//trim(answers(k)), 'are two tasks', dynamics)
       end do
       call refuse(tester, start//'--plot|q1', '--plot shows a run', dynamics)
-      call refuse(tester, start//'--sketch|s.svg', '--sketch shows a run', dynamics)
-      call refuse(tester, start//'--view|xy', 'draws none', dynamics)
+      call parse(start//'--sketch|s.svg|--view|xy', options, err, dynamics)
+      call tester%no_error(err, start//'--sketch|s.svg|--view|xy')
+      call refuse(tester, start//'--view|xy', 'none is drawn', dynamics)
       if (i > 1) call refuse(tester, start//'--starts|3', '--starts belongs to --equilibrium', dynamics)
     end do
     call refuse(tester, 'a.nml|--equilibrium|--starts|3|--linear|l.h5', '--linear is about one equilibrium', dynamics)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import data_file
-from mech9_cases import REFERENCE, table_and_report, text_of
+from mech9_cases import REFERENCE, TREE, run, table_and_report, text_of
 
 # Seconds, and tolerances. The five-bar whirls through nearly singular positions of whichever coordinates it is described
 # by, some twenty of them in 10 s, each over within milliseconds; its motion is chaotic: rounding decides how near to such a
@@ -101,3 +101,15 @@ def test_energy_changes_by_the_power_of_loads(checks, mech9d):
     # the integration's noise, 1e-12 of some 100 J, divided by h; truncation, h^8/630 of the ninth derivative, is
     # smaller while the motion changes over 20 ms and more
     checks.near(slope / scale, sum(powers.values()) / scale, 1e-7, 'dE/dt is the power of the loads')
+
+
+@pytest.mark.parametrize('name, words', [
+    ('pendulum', 'largest change of energy'),
+    ('pendulum_four_bar', 'largest change of energy'),
+    ('motor_crank', 'work of drives, motors and dampers up to'),
+    ('bouncing_slider', 'work of loads, impacts and friction up to')])
+def test_name_of_the_change(checks, mech9d, name, words):
+    """Work is not called a change of energy, which would look like an error of the integration."""
+    done = run(mech9d, os.path.join(TREE, 'examples', name, name + '.nml'), '--no-write')
+    checks.equal(done.returncode, 0, name)
+    checks.true(f'; {words} ' in done.stderr, f'{name}: {words}', done.stderr)

@@ -393,7 +393,8 @@ contains
     character(len=:), allocatable :: path
 
     path = self%argument('table')
-    if (path /= '' .or. self%has('hdf5') .or. self%has('animate') .or. self%has('no-write')) return
+    if (path /= '' .or. self%has('hdf5') .or. self%has('animate') .or. self%has('sketch') .or. self%has('no-write')) &
+      return
     if (self%has('equilibrium') .or. self%has('modes')) path = '-'
   end function table_of_answer
 

@@ -203,12 +203,13 @@ contains
       call raise(err, exit_usage, '--'//other//' and '//rest//' are two tasks; give one of them')
       return
     end if
-    other = first_of([character(len=7) :: 'plot', 'sketch'], given)
+    other = first_of(['plot'], given)
     if (other == '' .and. .not. any(given == 'modes')) other = first_of(['animate'], given)
     if (other /= '') then
       call raise(err, exit_usage, '--'//other//' shows a run, and '//rest//' makes none; leave one of them out')
-    else if (any(given == 'view') .and. .not. any(given == 'animate')) then
-      call raise(err, exit_usage, '--view is the view of a picture of the mechanism, and '//rest//' draws none; leave it out')
+    else if (any(given == 'view') .and. .not. (any(given == 'animate') .or. any(given == 'sketch'))) then
+      call raise(err, exit_usage, '--view is the view of a picture of the mechanism, and none is drawn; leave it out, or give '// &
+                 '--sketch')
     else if (any(given == 'starts') .and. rest /= '--equilibrium') then
       call raise(err, exit_usage, '--starts belongs to --equilibrium, and '//rest//' is about the equilibrium to which the '// &
                  'initial position leads; leave it out')

@@ -57,7 +57,7 @@ module mech9_options
     option_type('plot', needed_argument, '[TARGET:]NAMES', any_text, .true., both, &
                 'plot columns, as in q3,P.x or P.x:P.y; TARGET is a picture or term'), &
     option_type('sketch', needed_argument, 'FILE.svg', any_text, .false., both, &
-                'draw the mechanism at the start'), &
+                'draw the mechanism at the start, or where it rests'), &
     option_type('animate', needed_argument, 'FILE', any_text, .false., both, &
                 'draw the moving mechanism: a page (.html) or a picture (.svg, .gif)'), &
     option_type('view', needed_argument, 'VIEW', any_text, .false., both, &
