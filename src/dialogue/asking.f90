@@ -2,11 +2,12 @@
 module mech9_asking
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_text, only: string_type, lower
-  use mech9_grammar, only: group_table
+  use mech9_grammar, only: group_table, item_table
   use mech9_paragraph, only: print_paragraph
   use mech9_topics, only: topics
   use mech9_draft_joints, only: joints_text
-  use mech9_questions, only: question_type, ask_item, ask_seldom, ask_way, ask_joints
+  use mech9_questions, only: question_type, ask_item, ask_seldom, ask_way, ask_joints, ask_geometry
+  use mech9_planar_links, only: gives_lengths, is_placed
   use mech9_question_words, only: default_type, default_of, prompt_of, heading_of, words_for, seldom_names
   use mech9_question_help, only: gist_of, help_of, refusal_of_enter
   use mech9_conversation, only: conversation_type, going
@@ -100,6 +101,9 @@ contains
     conversation%topic = question%topic
     conversation%heading = ''
     write (error_unit, '(/,a)') '-- '//trim(topics(question%topic)%title)//' --'
+    ! what points are is told where these are wanted
+    if (question%kind == ask_geometry .or. (topics(question%topic)%groups == 'pair' .and. conversation%interview%outline%lengths)) &
+      return
     if (topics(question%topic)%opening /= '' .and. .not. conversation%opened(question%topic)) &
       call conversation%say(trim(topics(question%topic)%opening))
     conversation%opened(question%topic) = .true.
@@ -112,6 +116,7 @@ contains
     type(default_type), intent(out) :: default               !< the answer that Enter gives
     character(len=:), allocatable, intent(out) :: prompt     !< text in front of the answer
     character(len=:), allocatable :: heading
+    logical :: explained
 
     associate (draft => conversation%interview%draft, outline => conversation%interview%outline)
       select case (question%kind)
@@ -119,10 +124,12 @@ contains
         heading = heading_of(question, draft)
         if (heading /= '' .and. heading /= conversation%heading) call conversation%say(heading)
         if (heading /= '') conversation%heading = heading
-        if (.not. conversation%told(question%row)) call print_paragraph(error_unit, gist_of(question), 4)
-        conversation%told(question%row) = .true.
+        explained = group_table(question%group_row)%name == 'pair'
+        if (explained) explained = is_placed(draft, outline, question%place, trim(item_table(question%row)%name))
+        if (.not. (explained .or. conversation%told(question%row))) call print_paragraph(error_unit, gist_of(question), 4)
+        if (.not. explained) conversation%told(question%row) = .true.
         default = default_of(question, draft, outline, conversation%stem//'.dat')
-        prompt = prompt_of(question, draft, default)
+        prompt = prompt_of(question, draft, outline, default)
       case (ask_seldom)
         prompt = '  asked for only if you want it: '//seldom_names(question, outline)//' [no]: '
         if (len(prompt) > 79) then
@@ -136,6 +143,9 @@ contains
         if (heading == '') heading = 'none'
         if (len(heading) > 40) heading = 'as now'
         prompt = '  joints with several freedoms ['//heading//']: '
+      case (ask_geometry)
+        prompt = '  by lengths of planar links, or by points [points]: '
+        if (gives_lengths(draft, outline)) prompt = '  by lengths of planar links, or by points [lengths]: '
       case default
         prompt = '  guesses of the dependent coordinates, to choose an assembly [no]: '
         if (outline%guesses) prompt = prompt(:index(prompt, '[', back=.true.))//'yes]: '

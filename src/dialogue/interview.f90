@@ -9,6 +9,7 @@ module mech9_interview
   use mech9_draft_check, only: fault_type, read_draft_structure
   use mech9_topics, only: can_be_left_out
   use mech9_outline, only: outline_type, ways, new_outline, make_pairs, make_groups, drop_foreign, wants_forces
+  use mech9_planar_links, only: settle_planar_pairs
   use mech9_seldom, only: is_seldom
   use mech9_questions, only: question_type, make_questions, label_of, find_question, entry_name, &
                              ask_item, check_structure, check_start, check_all
@@ -96,6 +97,7 @@ contains
     if (pairs /= '' .and. self%dropped /= '') pairs = pairs//', '
     self%dropped = pairs//self%dropped
     call make_groups(self%draft, self%outline)
+    call settle_planar_pairs(self%draft, self%outline)
     call make_questions(self%draft, self%outline, self%questions)
     found = 0
     if (label /= '') found = find_question(self%questions, label)
@@ -335,6 +337,7 @@ contains
     integer :: row
 
     text = label_of(self%questions(self%at))//'; '//trim(self%outline%way)//';'
+    if (self%outline%lengths) text = text//' lengths'
     do row = 1, size(item_table)
       if (is_seldom(self%outline, item_table(row)) .and. self%outline%asked(row)) &
         text = text//' '//trim(item_table(row)%group)//'.'//trim(item_table(row)%name)
@@ -351,10 +354,16 @@ contains
     if (first == 0) return
     second = first + index(text(first + 1:)//';', ';')
     if (any(ways == adjustl(text(first + 1:second - 1)))) self%outline%way = adjustl(text(first + 1:second - 1))
+    self%outline%lengths = index(text(second:)//' ', ' lengths ') > 0
     do row = 1, size(item_table)
       if (index(text(second:)//' ', ' '//trim(item_table(row)%group)//'.'//trim(item_table(row)%name)//' ') > 0) &
         self%outline%asked(row) = .true.
     end do
+    if (self%outline%lengths) then
+      ! the names in the draft count as asked for, also those that the systems of the links settled
+      self%outline%asked([find_item_rows('pair', 'point'), find_item_rows('pair', 'axis'), &
+                          find_item_rows('pair', 'moving_point')]) = .false.
+    end if
     call self%refresh(text(:first - 1))
   end subroutine open_at
 end module mech9_interview

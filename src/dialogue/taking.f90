@@ -11,11 +11,17 @@ module mech9_taking
   use mech9_outline, only: ways, drop_empty_guesses
   use mech9_interview, only: most_parts
   use mech9_seldom, only: seldom_rows
-  use mech9_questions, only: question_type, entry_name, label_of, ask_item, ask_seldom, ask_way, ask_joints
+  use mech9_topics, only: topics
+  use mech9_planar_links, only: is_placed, point_in_plane, gives_lengths
+  use mech9_questions, only: question_type, entry_name, label_of, ask_item, ask_seldom, ask_way, ask_joints, ask_geometry
   use mech9_conversation, only: conversation_type
   implicit none
   private
   public :: take_answer, keep_answer, move_on
+
+  character(len=*), parameter :: what_lengths_mean = &
+    'Each link has a system of its own: the origin is in its pair of the lowest number, and x leads to its next pair. All axes '// &
+    'of turns are z. A coordinate is the angle between the x axes of its two links. For a pair beside x, give x and y.'
 
 contains
 
@@ -35,6 +41,8 @@ contains
       call take_way(conversation, line)
     case (ask_joints)
       call take_joints(conversation, line)
+    case (ask_geometry)
+      call take_geometry(conversation, line)
     case default
       call take_guesses(conversation, line)
     end select
@@ -52,7 +60,7 @@ contains
       call conversation%keep()
       return
     end if
-    call read_answer(item_table(question%row), line, text, problem)
+    call read_answer(item_table(question%row), line_meant(conversation, question, line), text, problem)
     if (problem == '') call hold_against_rest(conversation, question, text, problem)
     if (problem == '') call count_independent(conversation, text, problem)
     if (problem == '') then
@@ -61,6 +69,21 @@ contains
       call conversation%say(problem)
     end if
   end subroutine take_item
+
+  !> A line in which a length, or two numbers, become a point where the lengths of planar links are asked for.
+  pure function line_meant(conversation, question, line) result(text)
+    class(conversation_type), intent(in) :: conversation   !< the conversation as it stands
+    type(question_type), intent(in) :: question            !< the question
+    character(len=*), intent(in) :: line                   !< the answer, without blanks around it
+    character(len=:), allocatable :: text
+
+    text = line
+    if (group_table(question%group_row)%name /= 'pair') return
+    associate (interview => conversation%interview)
+      if (is_placed(interview%draft, interview%outline, question%place, trim(item_table(question%row)%name))) &
+        text = point_in_plane(line)
+    end associate
+  end function line_meant
 
   !> Check the number of coordinates that an answer makes independent. Refuse an answer that the structure hardly allows
   !> once, and accept it if it is given again.
@@ -238,6 +261,37 @@ contains
     if (line /= '') call tell_dropped(conversation)
     call move_on(conversation)
   end subroutine take_joints
+
+  !> Read the answer whether lengths of planar links or points give the geometry.
+  subroutine take_geometry(conversation, line)
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    character(len=*), intent(in) :: line                     !< the answer, without blanks around it
+    character(len=7), parameter :: ways_of_geometry(2) = [character(len=7) :: 'lengths', 'points']
+    character(len=:), allocatable :: way
+
+    way = word_meant(line(:min(len(line), 20)), ways_of_geometry)
+    associate (interview => conversation%interview)
+      if (line == '') then
+        way = 'points'
+        if (gives_lengths(interview%draft, interview%outline)) way = 'lengths'
+      end if
+      if (way == '') then
+        call conversation%say('Answer lengths or points.')
+        return
+      end if
+      interview%outline%lengths = way == 'lengths'
+      call interview%refresh('geometry')
+    end associate
+    associate (topic => conversation%topic)
+      if (way == 'lengths') then
+        call conversation%say(what_lengths_mean)
+      else if (.not. conversation%opened(topic)) then
+        call conversation%say(trim(topics(topic)%opening))
+        conversation%opened(topic) = .true.
+      end if
+    end associate
+    call move_on(conversation)
+  end subroutine take_geometry
 
   !> Read the answer about guesses of the dependent coordinates at the start.
   subroutine take_guesses(conversation, line)

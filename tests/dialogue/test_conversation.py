@@ -372,7 +372,7 @@ def test_short_answers(talks, folder):
     others. After the slide, Enter means a hinge about the axis of the hinges."""
     steps = [('title', 'Crank'), ('links: ', '4'), ('coordinates: ', '4'), ('angle_unit', 'd'), ('[pairs]', 'p'), ('several freedoms', ''),
              ('links of pair 1', '1-2'), ('links of pair 2', '1 - 4'), ('links of pair 3', '2-3'), ('links of pair 4', '3-4'),
-             ('cq: ', '1'), ('which of them', 'zero'), ('kind [revolute]', 'rev'), ('point', ''), ('axis: ', ''),
+             ('cq: ', '1'), ('or by points [lengths]', 'p'), ('which of them', 'zero'), ('kind [revolute]', 'rev'), ('point', ''), ('axis: ', ''),
              ('This must be given', 'z'), ('zero', '-x'),
              ('kind [revolute]', 'pris'), ('point', ''), ('axis: ', '-x'), ('zero', ''),
              ('kind [revolute]', ''), ('point', '.1 0 0'), ('axis [0, 0, 1]', ''), ('zero', ''),

@@ -217,7 +217,7 @@ contains
       if (question%kind /= ask_item) cycle
       asked(question%row) = .true.
       associate (item => item_table(question%row))
-        call tester%is_true(index(prompt_of(question, interview%draft, default_of(question, interview%draft, &
+        call tester%is_true(index(prompt_of(question, interview%draft, interview%outline, default_of(question, interview%draft, &
                                   interview%outline, 'x.dat')), trim(item%name)) > 0, &
                                   label_of(question)//': the prompt names the item')
         call tester%is_true(index(help_of(question, interview%draft, interview%outline), 'For example: ') > 0, &

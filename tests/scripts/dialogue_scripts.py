@@ -20,7 +20,7 @@ BY_VECTORS = [('[pairs]', 'vectors'), ('several freedoms', '')] + [(name, values
 
 def pairs(with_links):
     """The geometry of the pairs; where the structure is not given by pairs, their links are corrected."""
-    steps = [('which of them', 'moving_point' + (', links' if with_links else ''))]
+    steps = [('or by points [lengths]', 'points'), ('which of them', 'moving_point' + (', links' if with_links else ''))]
     for k in LINKS:
         steps += [(f'Pair {k}', '')]     # the kind: revolute
         if with_links:

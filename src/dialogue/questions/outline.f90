@@ -19,6 +19,7 @@ module mech9_outline
     integer :: program = kinematics
     character(len=7) :: way = ways(1)                       !< way in which the structure is given, one of `ways`
     logical :: asked(size(item_table)) = .false.            !< rarely used names that the user wants to give
+    logical :: lengths = .false.                            !< lengths of planar links give the geometry
     logical :: guesses = .false.                            !< guesses of the dependent coordinates at the start are wanted
     logical :: structure_known = .false.
     logical, allocatable :: independent(:)                  !< (M) which coordinates are independent, once the structure is known

@@ -7,7 +7,7 @@ module mech9_question_help
   use mech9_topics, only: can_be_left_out
   use mech9_outline, only: outline_type
   use mech9_seldom, only: seldom_rows
-  use mech9_questions, only: question_type, ask_item, ask_seldom, ask_way, ask_guesses, ask_joints
+  use mech9_questions, only: question_type, ask_item, ask_seldom, ask_way, ask_guesses, ask_joints, ask_geometry
   use mech9_question_words, only: coordinate_kind, angle_unit, unit_here, is_needed, seldom_names
   use mech9_explanations, only: find_explanation, explanations
   implicit none
@@ -61,6 +61,10 @@ contains
              'cylindrical two, free six. Name each by its first coordinate and its kind, with commas between; the joint has '// &
              'the coordinates that follow, too. Its first coordinate stands for it in C and in nws.'//line_end// &
              'For example: 4 spherical, 7 universal (coordinates 4, 5, 6 and 7, 8)'
+    case (ask_geometry)
+      text = 'By lengths you say how far apart the pairs of each link are, in a system that the link has for itself. Where a '// &
+             'pair does not lie on the line between the first two, give x and y there. By points you give the points and '// &
+             'directions of all pairs by three numbers, in one position or in systems of your own.'
     case (ask_guesses)
       text = 'The same links can be put together in several ways. Rough values of the dependent coordinates choose '// &
              'one; without them the search starts from zeros, the position in which the mechanism is described. '// &

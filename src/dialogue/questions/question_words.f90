@@ -11,8 +11,9 @@ module mech9_question_words
   use mech9_outline, only: outline_type
   use mech9_seldom, only: seldom_rows
   use mech9_study_needs, only: is_for_study
+  use mech9_planar_links, only: is_placed, is_settled, origin_pair, link_of_point
   use mech9_questions, only: question_type, entry_name, ask_item, ask_seldom, ask_way, &
-                             ask_guesses, ask_joints
+                             ask_guesses, ask_joints, ask_geometry
   implicit none
   private
   public :: default_type, default_of, prompt_of, heading_of, unit_here, coordinate_kind, angle_unit, words_for
@@ -50,7 +51,7 @@ contains
       else if (group == 'output' .and. name == 'table') then
         default%text = ''''//table_file//''''
       else if (is_needed(question, draft, outline)) then
-        default%text = likely_value(question, draft)
+        default%text = likely_value(question, draft, outline)
       else if (row%needed) then
         default%shown = ''             ! a data file may leave out the group, but here the value must be given
       else if (index(row%default, '(') /= 1 .and. row%default /= '''''') then
@@ -77,9 +78,10 @@ contains
   !> A likely value for a name that must be given. It is the axis of the revolute pair before, the first of the words
   !> allowed, or the default for a value at the start. It is empty if nothing is likely. A slide gives neither its kind
   !> nor its axis to the pair after it.
-  pure function likely_value(question, draft) result(text)
+  pure function likely_value(question, draft, outline) result(text)
     type(question_type), intent(in) :: question  !< the question
     type(draft_type), intent(in) :: draft        !< groups and names with their values as text
+    type(outline_type), intent(in) :: outline    !< facts known beside the draft
     character(len=:), allocatable :: text
 
     text = ''
@@ -88,6 +90,8 @@ contains
         text = trim(row%default)
       else if (row%group == 'pair' .and. row%name == 'axis') then
         text = axis_before(question%place, draft)
+      else if (row%group == 'pair' .and. is_placed(draft, outline, question%place, trim(row%name))) then
+        if (kind_in(draft, draft%find('pair', question%place)) == 'prismatic') text = '0, 0, 0'
       else if (group_table(question%group_row)%repeats .and. row%words /= '') then
         text = ''''//row%words(:index(row%words, ' ') - 1)//''''
       end if
@@ -143,6 +147,9 @@ contains
         case ('nrg', 'nws', 'rdw')
           is_needed = outline%way == 'vectors'
         end select
+      case ('pair')
+        is_needed = is_needed .or. (is_placed(draft, outline, question%place, trim(row%name)) .and. .not. &
+                                     is_settled(draft, outline, question%place, trim(row%name)))
       case ('parameter')
         is_needed = is_needed .or. is_for_study(draft, question%place, trim(row%name))
       case ('initial')
@@ -195,9 +202,10 @@ contains
   end function heading_of
 
   !> The prompt of a question: its name, its unit and its default.
-  pure function prompt_of(question, draft, default) result(text)
+  pure function prompt_of(question, draft, outline, default) result(text)
     type(question_type), intent(in) :: question  !< the question
     type(draft_type), intent(in) :: draft        !< groups and names with their values as text
+    type(outline_type), intent(in) :: outline    !< facts known beside the draft
     type(default_type), intent(in) :: default    !< the answer that Enter gives
     character(len=:), allocatable :: text, unit
 
@@ -208,6 +216,9 @@ contains
       if (question%line > 0) text = '  row '//to_text(question%line)//' of c'
       if (row%group == 'pair' .and. row%name == 'links') &
         text = '  links of pair '//to_text(coordinates_of_pair(draft, question%place))
+      if (row%group == 'pair') then
+        if (is_placed(draft, outline, question%place, trim(row%name))) text = '  '//place_in_words(question, draft, outline)
+      end if
       if (question%is_new) then
         text = '  '//trim(row%group)//', '//trim(row%name)
         if (group_table(question%group_row)%repeats) &
@@ -219,6 +230,21 @@ contains
     if (default%shown /= '') text = text//' ['//default%shown//']'
     text = text//': '
   end function prompt_of
+
+  !> The question where a pair lies on a link of a planar mechanism.
+  pure function place_in_words(question, draft, outline) result(text)
+    type(question_type), intent(in) :: question  !< the question
+    type(draft_type), intent(in) :: draft        !< groups and names with their values as text
+    type(outline_type), intent(in) :: outline    !< facts known beside the draft
+    character(len=:), allocatable :: text, name
+    integer :: origin
+
+    name = trim(item_table(question%row)%name)
+    origin = origin_pair(draft, outline, question%place, name)
+    text = 'on link '//to_text(link_of_point(draft, outline, question%place, name))//', the origin'
+    if (origin /= number_in(draft, 'pair', question%place)) &
+      text = text(:index(text, ',') + 1)//'length from pair '//to_text(origin)//', or x y'
+  end function place_in_words
 
   !> The unit of a name in this data file. Angles are in rad or degrees; the units of coordinates, and of loads on them,
   !> follow from the kind of their pair.
@@ -347,6 +373,8 @@ contains
         if (list(i:i) == ',') list(i:i) = ' '
       end do
       list = 'yes no '//list//' '
+    case (ask_geometry)
+      list = 'lengths points '
     case (ask_guesses)
       list = 'yes no '
     case (ask_joints)

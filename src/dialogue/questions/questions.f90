@@ -13,16 +13,18 @@ module mech9_questions
   use mech9_outline, only: outline_type, wants_forces
   use mech9_seldom, only: is_seldom, is_used
   use mech9_study_needs, only: is_for_study
+  use mech9_planar_links, only: may_be_planar, is_settled, is_placed
   implicit none
   private
   public :: question_type, make_questions, label_of, find_question, entry_name, is_open
-  public :: ask_item, ask_seldom, ask_way, ask_guesses, ask_joints, check_structure, check_start, check_all
+  public :: ask_item, ask_seldom, ask_way, ask_guesses, ask_joints, ask_geometry, check_structure, check_start, check_all
 
   !> The kinds of questions. Two are about a name of a group, and about the rarely used names of a group. Others are
-  !> about the way in which the structure is given, joints with several freedoms, and guesses of dependent coordinates.
+  !> about the way in which the structure is given, joints with several freedoms, lengths or points of a planar mechanism, and
+  !> guesses of dependent coordinates.
   !> Checks between the questions are kinds of their own.
   integer, parameter :: ask_item = 1, ask_seldom = 2, ask_way = 3, ask_guesses = 4, ask_joints = 5
-  integer, parameter :: check_structure = 6, check_start = 7, check_all = 8
+  integer, parameter :: check_structure = 6, check_start = 7, check_all = 8, ask_geometry = 9
 
   !> One question.
   type :: question_type
@@ -118,10 +120,12 @@ contains
     if (group == 'user' .and. .not. has_procedures(draft)) return
     if (group == 'cam' .and. .not. may_have_cams(draft)) return
     if (group == 'coupling' .and. draft%number('mechanism', 1, 'coordinates') == 1) return
+    if (group == 'pair' .and. may_be_planar(draft, outline)) &
+      call append(questions, count, question_type(kind=ask_geometry, topic=topic, group_row=group_row))
     if (group == 'initial') then
       if (outline%program == kinematics .or. .not. all(outline%independent)) &
         call append(questions, count, question_type(kind=ask_guesses, topic=topic, group_row=group_row))
-    else if (any(item_table(rows)%seldom) .and. group /= 'mechanism' .and. &
+    else if (any(item_table(rows)%seldom) .and. group /= 'mechanism' .and. .not. (group == 'pair' .and. outline%lengths) .and. &
              (draft%count_of(group) > 0 .or. .not. (is_on_request(group_row) .or. &
                                                      any(group == ['load    ', 'motor   ', 'cam     ', 'coupling'])))) then
       ! A conversation does not begin with rarely used names. Those of the mechanism can be changed by their names.
@@ -202,8 +206,12 @@ contains
       if (is_numbered(question%group_row) .and. row%name == 'coordinate' .and. &
           .not. can_be_left_out(question%group_row, outline%program)) return
       if (row%kinds /= '' .and. (kind == '' .or. .not. takes_kind(row, kind))) return
+      if (name == 'pair') then
+        is_wanted = is_placed(draft, outline, question%place, trim(row%name))
+        if (row%name == 'links' .and. outline%way == 'pairs') return
+        if (is_settled(draft, outline, question%place, trim(row%name)) .and. .not. outline%asked(question%row)) return
+      end if
       if (is_seldom(outline, row) .and. .not. (outline%asked(question%row) .or. is_wanted)) return
-      if (name == 'pair' .and. row%name == 'links' .and. outline%way == 'pairs') return
       if (replaced(row%name) .and. draft%has(name, question%place, 'dh') &
           .and. .not. draft%has(name, question%place, trim(row%name))) return
       is_open = name /= 'initial' .or. is_open_at_start(draft, outline, question)
@@ -372,6 +380,8 @@ contains
       label = 'way of structure'
     case (ask_joints)
       label = 'joints'
+    case (ask_geometry)
+      label = 'geometry'
     case (ask_guesses)
       label = 'guesses'
     case (check_structure)
