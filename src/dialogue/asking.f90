@@ -101,7 +101,7 @@ contains
     conversation%topic = question%topic
     conversation%heading = ''
     write (error_unit, '(/,a)') '-- '//trim(topics(question%topic)%title)//' --'
-    ! what points are is told where these are wanted
+    ! the words about points come where these are wanted
     if (question%kind == ask_geometry .or. (topics(question%topic)%groups == 'pair' .and. conversation%interview%outline%lengths)) &
       return
     if (topics(question%topic)%opening /= '' .and. .not. conversation%opened(question%topic)) &

@@ -3,7 +3,6 @@
 !> Each link gets a system of its own. Its origin is in the pair with the lowest number on the link, and its x axis leads to the next
 !> pair. Lengths, or x and y, place the other pairs on the link. All axes of turns are z.
 module mech9_planar_links
-  use mech9_text, only: to_text
   use mech9_grammar, only: words_of
   use mech9_draft, only: draft_type
   use mech9_draft_joints, only: kind_in, number_in, has_joints
