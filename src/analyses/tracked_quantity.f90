@@ -27,6 +27,7 @@ module mech9_tracked_quantity
     integer :: column = 0                   !< number of its column
     integer :: family(0:2) = 0              !< columns of a position, its rate and its acceleration; 0 where they are not known
     integer :: order = 0                    !< of its column: 0 position, 1 rate, 2 acceleration
+    real(wp) :: weights(0:2) = 1.0_wp       !< factors of the family to numbers whose derivatives by time are the next ones
     type(quantity_sums_type) :: sums
     integer, allocatable :: changes(:, :)   !< (P,0:2) columns of the derivatives of the family by parameters, or (P,0:0) of the
                                             !< column alone; not allocated where they are not followed
@@ -160,12 +161,12 @@ contains
 
     self%count = self%count + 1
     self%t(self%count) = row(1)
-    self%y(:, self%count) = row(self%family)
+    self%y(:, self%count) = row(self%family)*self%weights
     self%at_joint(self%count) = allocated(rate)
     if (.not. allocated(self%changes)) return
     if (allocated(rate)) self%rate(:, self%count) = rate
     do order = 0, 2
-      self%dy(:, self%count, order) = row(self%changes(:, order))
+      self%dy(:, self%count, order) = row(self%changes(:, order))*self%weights(order)
     end do
   end subroutine keep_output
 

@@ -57,7 +57,6 @@ module mech9_failure
     real(wp) :: distance = 0.0_wp               !< from dimensions that let a chain move [rad, lengths of the mechanism], or length of a link [m]
     real(wp) :: deviation = 0.0_wp              !< estimated error of a position [rad, m]
     real(wp) :: tolerance = 0.0_wp              !< as the user gave it, or an error that is allowed [m; of positions rad, m]
-    real(wp) :: angle_unit = 1.0_wp             !< unit of angles in the data file [rad]
   end type failure_type
 
   !> The integration that a failure of its system ended.

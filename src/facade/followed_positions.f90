@@ -213,7 +213,7 @@ contains
       else
         call move(self, plan, rates(:, place), moving)
       end if
-      dq(:, place) = moving%dq/plan%result_unit
+      dq(:, place) = moving%dq/plan%rate_unit
     end subroutine take_position
   end subroutine find
 
@@ -241,7 +241,7 @@ contains
 
     state%dq(self%driven) = 0.0_wp
     state%ddq(self%driven) = 0.0_wp
-    state%dq(self%moved) = rates*plan%result_unit(self%moved)
+    state%dq(self%moved) = rates*plan%rate_unit(self%moved)
     if (present(accelerations)) state%ddq(self%moved) = accelerations*plan%result_unit(self%moved)
     do b = 1, size(plan%blocks)
       work = new_block_work(plan%blocks(b))

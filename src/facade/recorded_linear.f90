@@ -5,9 +5,9 @@ module mech9_recorded_linear
   use mech9_error, only: error_type
   use mech9_text, only: texts_of_one_length
   use mech9_model, only: model_type
-  use mech9_columns, only: columns_type, kinematic_columns
+  use mech9_columns, only: columns_type
   use mech9_rest, only: rest_type
-  use mech9_linear_names, only: name_linear_system
+  use mech9_linear_names, only: name_linear_system, linear_columns
   use mech9_state_space, only: state_space_type, find_state_space
   use mech9_checked_mechanism, only: checked_mechanism_type
   implicit none
@@ -47,7 +47,7 @@ contains
     if (.not. allocated(err)) call rest%assemble(model, err)
     if (.not. allocated(err)) call rest%find(model, 0, .true., err)
     if (.not. allocated(err)) then
-      outputs = kinematic_columns(model%mechanism, model%request%output)
+      outputs = linear_columns(model%mechanism, model%request%output)
       associate (equilibrium => rest%equilibria(1))
         system%free = equilibrium%resting%free
         system%q = equilibrium%resting%state%q

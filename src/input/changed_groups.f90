@@ -111,7 +111,7 @@ contains
       end associate
     end do
     associate (m => model%mechanism, problem => model%problem)
-      if (initials) call read_initial(document, problem%partition, m%pairs, m%angle_unit, problem%initial, diagnostics)
+      if (initials) call read_initial(document, problem%partition, m%pairs, m%units, problem%initial, diagnostics)
       call read_couplings_again(document, changed, initials, model, diagnostics)
       ! the axes of the pairs tell whether the tensor of a link is enough, and how cams turn
       if (bodies .or. (pairs .and. size(m%bodies) > 0)) call read_bodies(document, m%structure, m%pairs, m%bodies, diagnostics)

@@ -2,6 +2,7 @@
 module mech9_contact_reader
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
+  use mech9_units, only: units_type
   use mech9_mechanism, only: mechanism_type
   use mech9_request, only: time_grid_type
   use mech9_contact, only: contact_type
@@ -31,7 +32,7 @@ contains
     do i = 1, size(numbers)
       associate (group => document%groups(numbers(i)), contact => mechanism%contacts(i))
         call check_link(group, 'link', 1, mechanism%structure%shown_links(), diagnostics)
-        call read_contact(group, contact)
+        call read_contact(group, mechanism%units, contact)
         contact%place = diagnostics%place(group%span)
         call take_point(group, mechanism, contact, diagnostics)
         call check_surface(group, contact, diagnostics)
@@ -51,8 +52,9 @@ contains
   end subroutine read_contacts
 
   !> The contact of one group, without its point.
-  pure subroutine read_contact(group, contact)
+  pure subroutine read_contact(group, units, contact)
     type(group_type), intent(in) :: group         !< the group of the data file
+    type(units_type), intent(in) :: units         !< units of the file
     type(contact_type), intent(inout) :: contact  !< gets its numbers
 
     contact%links(2) = get_integer(group, 'link')
@@ -67,9 +69,11 @@ contains
     contact%static_friction = contact%sliding_friction
     if (has_name(group, 'static_friction')) contact%static_friction = get_real(group, 'static_friction')
     contact%is_rigid = .not. has_name(group, 'stiffness')
-    if (.not. contact%is_rigid) contact%stiffness = get_real(group, 'stiffness')
-    contact%damping = get_real(group, 'damping')
     contact%exponent = get_real(group, 'exponent')
+    associate (unit => units%force/units%length**contact%exponent)
+      if (.not. contact%is_rigid) contact%stiffness = unit*get_real(group, 'stiffness')
+      contact%damping = unit*get_real(group, 'damping')/units%length
+    end associate
   end subroutine read_contact
 
   !> Take link and position of the point by its name.

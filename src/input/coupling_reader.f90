@@ -5,7 +5,9 @@ module mech9_coupling_reader
   use mech9_text, only: to_text
   use mech9_counted, only: counted
   use mech9_pair, only: pair_slot_type
+  use mech9_units, only: units_type, coordinate_units_type
   use mech9_mechanism, only: mechanism_type
+  use mech9_result_units, only: si_unit
   use mech9_coupling, only: coupling_slot_type
   use mech9_linear_coupling, only: linear_coupling_type
   use mech9_table_coupling, only: table_coupling_type, new_table_coupling, new_turning_table
@@ -104,7 +106,7 @@ contains
   subroutine read_linear(group, positions, mechanism, slot, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
     real(wp), intent(in) :: positions(:)                  !< (M) coordinates at the start [rad, m]
-    type(mechanism_type), intent(in) :: mechanism         !< with its pairs and its unit of angles
+    type(mechanism_type), intent(in) :: mechanism         !< with its pairs and its units
     type(coupling_slot_type), intent(inout) :: slot       !< gets the coupling
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(linear_coupling_type) :: linear
@@ -114,7 +116,7 @@ contains
 
     known = diagnostics%known()
     k = get_integers(group, 'coordinates')
-    units = units_of(k, mechanism%pairs, mechanism%angle_unit)
+    units = units_of(k, mechanism%pairs, mechanism%units)
     linear%name = get_text(group, 'kind')
     if (linear%name == 'linear') then
       linear%coefficients = get_reals(group, 'coefficients')
@@ -136,7 +138,7 @@ contains
   subroutine read_table(path, group, mechanism, slot, diagnostics)
     character(len=*), intent(in) :: path                  !< of the table
     type(group_type), intent(in) :: group                 !< the group of the data file
-    type(mechanism_type), intent(in) :: mechanism         !< with its pairs and its unit of angles
+    type(mechanism_type), intent(in) :: mechanism         !< with its pairs and its units
     type(coupling_slot_type), intent(inout) :: slot       !< gets the coupling
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(table_coupling_type) :: table
@@ -148,7 +150,7 @@ contains
 
     k = get_integers(group, 'coordinates')
     if (.not. are_given(k, mechanism%pairs)) return
-    units = units_of(k, mechanism%pairs, mechanism%angle_unit)
+    units = units_of(k, mechanism%pairs, mechanism%units)
     call read_table_file(path, span_of(group, 'file', 1), 'q'//to_text(k(1)), 'q'//to_text(k(2)), points, ok, diagnostics)
     if (.not. ok) return
     do i = 1, 2
@@ -162,8 +164,7 @@ contains
       call new_table_coupling(points(1, :), points(2, :), table, err)
     end if
     table%unit = units(1)
-    table%unit_name = 'm'
-    if (turns(k(1), mechanism%pairs)) table%unit_name = merge('deg', 'rad', mechanism%angle_unit < 1.0_wp)
+    table%unit_name = mechanism%units%name_of(trim(si_unit(mechanism%pairs(k(1))%pair)))
     if (allocated(err)) then
       call explain(err)
       call diagnostics%add(span_of(group, 'file', 1), err%message, err%code)
@@ -197,7 +198,7 @@ contains
   subroutine close_turn(group, k, mechanism, points, gain, ok, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
     integer, intent(in) :: k(2)                           !< numbers of the coordinates
-    type(mechanism_type), intent(in) :: mechanism         !< with its pairs and its unit of angles
+    type(mechanism_type), intent(in) :: mechanism         !< with its pairs and its units
     real(wp), intent(inout) :: points(:, :)               !< (2,n) values of both coordinates [rad, m]; the last ones are moved
     real(wp), intent(out) :: gain                         !< change of the second coordinate per rad of the first one, over the turn
     logical, intent(out) :: ok                            !< whether nothing was reported
@@ -211,7 +212,7 @@ contains
     if (turns(k(2), mechanism%pairs)) rise = turn*anint((points(2, n) - points(2, 1))/turn)
     ok = abs(points(2, n) - points(2, 1) - rise) <= same_end*max(abs(rise), maxval(points(2, :)) - minval(points(2, :)))
     if (.not. ok) then
-      unit = unit_of(k(2), mechanism%pairs, mechanism%angle_unit)
+      unit = unit_of(k(2), mechanism%pairs, mechanism%units)
       call diagnostics%add(span_of(group, 'file', 1), 'the table repeats after a turn of coordinate '//to_text(k(1))// &
                            ' and would jump there: coordinate '//to_text(k(2))//' begins at '// &
                            to_text(points(2, 1)/unit)//' and ends at '//to_text(points(2, n)/unit)//'; let it end as it begins'// &
@@ -223,23 +224,28 @@ contains
   end subroutine close_turn
 
   !> The unit of a coordinate in the file.
-  pure real(wp) function unit_of(k, pairs, angle_unit)
+  pure real(wp) function unit_of(k, pairs, units) result(unit)
     integer, intent(in) :: k                       !< number of the coordinate
     type(pair_slot_type), intent(in) :: pairs(:)   !< (M) pairs by coordinate
-    real(wp), intent(in) :: angle_unit             !< unit of angles in the file [rad]
+    type(units_type), intent(in) :: units          !< units of the file
 
-    unit_of = merge(angle_unit, 1.0_wp, turns(k, pairs))
+    type(coordinate_units_type) :: found
+
+    if (k <= size(pairs)) then
+      if (allocated(pairs(k)%pair)) found = units%of_coordinate(trim(si_unit(pairs(k)%pair)))
+    end if
+    unit = found%position
   end function unit_of
 
   !> The units of some coordinates in the file.
-  pure function units_of(k, pairs, angle_unit) result(units)
+  pure function units_of(k, pairs, units) result(list)
     integer, intent(in) :: k(:)                    !< numbers of the coordinates
     type(pair_slot_type), intent(in) :: pairs(:)   !< (M) pairs by coordinate
-    real(wp), intent(in) :: angle_unit             !< unit of angles in the file [rad]
-    real(wp) :: units(size(k))
+    type(units_type), intent(in) :: units          !< units of the file
+    real(wp) :: list(size(k))
     integer :: i
 
-    units = [(unit_of(k(i), pairs, angle_unit), i=1, size(k))]
+    list = [(unit_of(k(i), pairs, units), i=1, size(k))]
   end function units_of
 
   !> Whether the pairs of both coordinates are known, without errors in their groups.

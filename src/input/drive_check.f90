@@ -4,10 +4,11 @@ module mech9_drive_check
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, place_words
   use mech9_text, only: to_text
+  use mech9_mechanism, only: mechanism_type
   use mech9_model, only: model_type
   use mech9_pair, only: pair_guide_type
   use mech9_law, only: law_type
-  use mech9_result_units, only: unit_of
+  use mech9_result_units, only: unit_of, rate_unit_of, length_text
   use mech9_independent_choice, only: find_choice
   use mech9_partition, only: partition_type
   use mech9_source, only: span_type
@@ -69,28 +70,32 @@ contains
         if (.not. allocated(model%problem%drives(i)%drive)) cycle
         if (model%problem%drives(i)%drive%coordinate /= k) cycle
         call model%problem%drives(i)%drive%evaluate(model%request%time%start, q, dq, ddq, err)
-        if (.not. allocated(err)) call check_place(document%groups(drives(i))%span, k, q, guide%length, diagnostics)
+        if (.not. allocated(err)) call check_place(document%groups(drives(i))%span, model%mechanism, k, q, guide%length, &
+                                                 diagnostics)
       end do
       do i = 1, size(initials)
         associate (group => document%groups(initials(i)))
           if (get_integer(group, 'coordinate') == k .and. has_name(group, 'position')) &
-            call check_place(span_of(group, 'position', 1), k, get_real(group, 'position'), guide%length, diagnostics)
+            call check_place(span_of(group, 'position', 1), model%mechanism, k, &
+                             get_real(group, 'position')*unit_of(model%mechanism, k), guide%length, diagnostics)
         end associate
       end do
     end do
   end subroutine check_curves
 
   !> Report a place beyond the ends of a curve.
-  pure subroutine check_place(span, coordinate, q, length, diagnostics)
+  pure subroutine check_place(span, mechanism, coordinate, q, length, diagnostics)
     type(span_type), intent(in) :: span                   !< place of the number in the data file
+    type(mechanism_type), intent(in) :: mechanism         !< the mechanism
     integer, intent(in) :: coordinate                     !< number of the coordinate
     real(wp), intent(in) :: q                             !< its place at the start [m]
     real(wp), intent(in) :: length                        !< of the curve [m]
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
 
     if (q >= -same_zero*length .and. q <= (1.0_wp + same_zero)*length) return
-    call diagnostics%add(span, 'coordinate '//to_text(coordinate)//' would start at '//to_text(q)// &
-                         ' m, and its curve leads from 0 to '//to_text(length, 10)//' m; start on the curve')
+    call diagnostics%add(span, 'coordinate '//to_text(coordinate)//' would start at '// &
+                         to_text(q/mechanism%units%length)//' '//trim(mechanism%units%length_name)// &
+                         ', and its curve leads from 0 to '//trim(length_text(mechanism, length, 10))//'; start on the curve')
   end subroutine check_place
 
   !> Report motors on dependent coordinates, and on driven ones.
@@ -212,7 +217,10 @@ contains
 
     if (abs(given - driven) <= same_value*max(abs(given), abs(driven)) + same_zero) return
     unit = 1.0_wp
-    if (allocated(model%mechanism%pairs(drive%coordinate)%pair)) unit = unit_of(model%mechanism, drive%coordinate)
+    if (allocated(model%mechanism%pairs(drive%coordinate)%pair)) then
+      unit = unit_of(model%mechanism, drive%coordinate)
+      if (name == 'velocity') unit = rate_unit_of(model%mechanism, drive%coordinate)
+    end if
     call diagnostics%add(span_of(group, name, 1), 'the '//name//' of coordinate '//to_text(drive%coordinate)// &
                          ' at the start is '//to_text(driven/unit)//' by its drive in '//trim(place_words(drive%place))// &
                          ', not '//to_text(given/unit)//'; leave the initial value out, or correct the drive')

@@ -9,6 +9,8 @@ module mech9_drive_reader
   use mech9_partition, only: partition_type, driven_coordinate
   use mech9_pair, only: pair_slot_type
   use mech9_mechanism, only: mechanism_type
+  use mech9_units, only: units_type, coordinate_units_type
+  use mech9_result_units, only: si_unit
   use mech9_law, only: law_type, drive_slot_type
   use mech9_polynomial_law, only: polynomial_law_type
   use mech9_harmonic_law, only: harmonic_law_type
@@ -23,7 +25,7 @@ module mech9_drive_reader
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
-  public :: read_drives, read_drive_group, read_law, files_of_groups, unit_of_coordinate
+  public :: read_drives, read_drive_group, read_law, files_of_groups, units_of_coordinate
 
   !> A period is that of the segments where it differs by no more than this part.
   real(wp), parameter :: same_period = 1.0e-9_wp
@@ -68,15 +70,15 @@ contains
     type(procedure_drive_type) :: user_drive
     type(error_type), allocatable :: err
 
-    associate (group => document%groups(number), angle_unit => mechanism%angle_unit)
+    associate (group => document%groups(number))
       if (get_text(group, 'kind') == 'user') then
         call make_procedure_drive(get_integer(group, 'coordinate'), start, mechanism%parameters, mechanism%procedures%drive, &
                                   user_drive, err)
         if (.not. allocated(err)) allocate (slot%drive, source=user_drive)
         if (allocated(err)) call diagnostics%add(span_of(group, 'kind', 1), err%message, err%code)
       else
-        call read_law(document, group, get_text(group, 'kind'), angle_unit, &
-                      unit_of_coordinate(group, mechanism%pairs, angle_unit), slot%drive, diagnostics)
+        call read_law(document, group, get_text(group, 'kind'), units_of_coordinate(group, mechanism%pairs, mechanism%units), &
+                      slot%drive, diagnostics)
       end if
       if (.not. allocated(slot%drive)) return
       slot%drive%coordinate = get_integer(group, 'coordinate')
@@ -84,19 +86,18 @@ contains
     end associate
   end subroutine read_drive_group
 
-  !> The factor that turns a number of a group about a coordinate into rad or m.
-  pure real(wp) function unit_of_coordinate(group, pairs, angle_unit) result(unit)
+  !> The factors that turn numbers of a group about a coordinate into SI.
+  pure type(coordinate_units_type) function units_of_coordinate(group, pairs, units) result(unit)
     type(group_type), intent(in) :: group         !< a group with a name `coordinate`
     type(pair_slot_type), intent(in) :: pairs(:)  !< (M) pairs by coordinate; a slot is empty where its group has an error
-    real(wp), intent(in) :: angle_unit            !< unit of angles in the file [rad]
+    type(units_type), intent(in) :: units         !< units of the file
     integer :: k
 
-    unit = 1.0_wp
     k = get_integer(group, 'coordinate')
     if (k > size(pairs)) return
     if (.not. allocated(pairs(k)%pair)) return
-    if (pairs(k)%pair%angular) unit = angle_unit
-  end function unit_of_coordinate
+    unit = units%of_coordinate(trim(si_unit(pairs(k)%pair)))
+  end function units_of_coordinate
 
   !> Report a drive of a coordinate that does not exist.
   pure subroutine check_coordinate(group, partition, diagnostics)
@@ -112,32 +113,34 @@ contains
                            to_text(size(partition%kind)))
   end subroutine check_coordinate
 
-  !> A law of time by the names of a group; it stays unallocated where an error was reported, and for a constant.
-  subroutine read_law(document, group, name, angle_unit, unit, law, diagnostics)
+  !> A law of time by the names of a group, in SI; it stays unallocated where an error was reported, and for a constant.
+  subroutine read_law(document, group, name, unit, law, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
     type(group_type), intent(in) :: group                 !< the group of the data file
     character(len=*), intent(in) :: name                  !< of the law
-    real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
-    real(wp), intent(in) :: unit                          !< unit of the law's values in the file [rad, m or 1]
+    type(coordinate_units_type), intent(in) :: unit       !< units of the law's values and rates in the file
     class(law_type), allocatable, intent(out) :: law      !< the law
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(polynomial_law_type) :: polynomial
     type(harmonic_law_type) :: harmonic
+    real(wp), allocatable :: given(:)
 
     select case (name)
     case ('polynomial')
-      polynomial%coefficients = unit*get_reals(group, 'coefficients')
+      given = get_reals(group, 'coefficients')
+      polynomial%coefficients = unit%position*given
+      if (size(given) > 1) polynomial%coefficients(2) = unit%rate*given(2)
       allocate (law, source=polynomial)
     case ('harmonic')
-      harmonic%mean = unit*get_real(group, 'mean')
-      harmonic%amplitude = unit*get_real(group, 'amplitude')
-      harmonic%angular_frequency = angle_unit*get_real(group, 'angular_frequency')
-      harmonic%phase = angle_unit*get_real(group, 'phase')
+      harmonic%mean = unit%position*get_real(group, 'mean')
+      harmonic%amplitude = unit%position*get_real(group, 'amplitude')
+      harmonic%angular_frequency = get_real(group, 'angular_frequency')
+      harmonic%phase = get_real(group, 'phase')
       allocate (law, source=harmonic)
     case ('table')
-      call read_table(document, group, unit, law, diagnostics)
+      call read_table(document, group, unit%position, law, diagnostics)
     case ('segments')
-      call read_segments(group, unit, law, diagnostics)
+      call read_segments(group, unit%position, law, diagnostics)
     end select
   end subroutine read_law
 

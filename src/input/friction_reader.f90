@@ -3,6 +3,7 @@ module mech9_friction_reader
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
   use mech9_pair, only: screw_factors_type
+  use mech9_units, only: coordinate_units_type
   use mech9_mechanism, only: mechanism_type
   use mech9_request, only: time_grid_type
   use mech9_friction, only: friction_type
@@ -10,7 +11,7 @@ module mech9_friction_reader
   use mech9_load, only: load_slot_type, append_loads
   use mech9_document, only: document_type, group_type
   use mech9_lookup, only: groups_named, has_name, get_integer, get_real, get_text, span_of
-  use mech9_drive_reader, only: unit_of_coordinate
+  use mech9_drive_reader, only: units_of_coordinate
   use mech9_diagnostics, only: diagnostics_type
   use mech9_load_reader, only: check_coordinate
   implicit none
@@ -34,7 +35,7 @@ contains
     do i = 1, size(numbers)
       associate (group => document%groups(numbers(i)), friction => mechanism%frictions(i))
         call check_coordinate(group, size(mechanism%pairs), diagnostics)
-        call read_friction(group, unit_of_coordinate(group, mechanism%pairs, mechanism%angle_unit), friction)
+        call read_friction(group, units_of_coordinate(group, mechanism%pairs, mechanism%units), friction)
         friction%place = diagnostics%place(group%span)
         k = friction%coordinate
         if (k > size(mechanism%pairs)) cycle
@@ -57,7 +58,7 @@ contains
   !> The friction of one group.
   pure subroutine read_friction(group, unit, friction)
     type(group_type), intent(in) :: group           !< the group of the data file
-    real(wp), intent(in) :: unit           !< unit of the coordinate in the file [rad or m]
+    type(coordinate_units_type), intent(in) :: unit   !< units of the coordinate in the file
     type(friction_type), intent(inout) :: friction  !< gets its numbers
 
     friction%coordinate = get_integer(group, 'coordinate')
@@ -67,9 +68,9 @@ contains
     friction%radius = get_real(group, 'radius')
     friction%face_radius = get_real(group, 'face_radius')
     if (has_name(group, 'arm')) friction%arm = get_real(group, 'arm')
-    friction%preload = get_real(group, 'preload')
+    friction%preload = unit%force*get_real(group, 'preload')
     friction%is_smooth = get_text(group, 'law') == 'smooth'
-    if (has_name(group, 'transition')) friction%transition = unit*get_real(group, 'transition')
+    if (has_name(group, 'transition')) friction%transition = unit%rate*get_real(group, 'transition')
   end subroutine read_friction
 
   !> Take the kind of motion of the pair. Friction is not allowed in pairs of other kinds, and in some joints.

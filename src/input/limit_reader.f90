@@ -120,10 +120,10 @@ contains
 
     limit%kind = transmission_limit
     call read_coordinate(group, model, limit, exists, diagnostics)
-    limit%at_least = get_real(group, 'at_least')*model%mechanism%angle_unit
+    limit%at_least = get_real(group, 'at_least')
     if (limit%at_least > right_angle*(1.0_wp + epsilon(1.0_wp))) &
       call diagnostics%add(span_of(group, 'at_least', 1), 'a transmission angle is at most a right angle, '// &
-                           to_text(right_angle/model%mechanism%angle_unit)//' in the unit of this file')
+                           to_text(right_angle/model%mechanism%units%angle)//' in the unit of this file')
   end subroutine read_transmission
 
   !> Read the coordinate of a limit.

@@ -1,8 +1,7 @@
 !> Loads from a checked document.
 module mech9_load_reader
-  use mech9_kinds, only: wp
   use mech9_text, only: to_text
-  use mech9_pair, only: pair_slot_type
+  use mech9_units, only: coordinate_units_type
   use mech9_mechanism, only: mechanism_type
   use mech9_load, only: load_slot_type
   use mech9_force_load, only: force_load_type
@@ -11,7 +10,7 @@ module mech9_load_reader
   use mech9_procedure_load, only: procedure_load_type
   use mech9_document, only: document_type, group_type
   use mech9_lookup, only: groups_named, has_name, get_integer, get_integers, get_real, get_reals, get_text, span_of
-  use mech9_drive_reader, only: read_law
+  use mech9_drive_reader, only: read_law, units_of_coordinate
   use mech9_motion_reader, only: check_link
   use mech9_diagnostics, only: diagnostics_type
   implicit none
@@ -55,14 +54,14 @@ contains
         allocate (slot%load, source=spring_load(group))
       case ('coordinate')
         call check_coordinate(group, size(pairs), diagnostics)
-        allocate (slot%load, source=coordinate_load(group, pairs, mechanism%angle_unit))
+        allocate (slot%load, source=coordinate_load(group, units_of_coordinate(group, pairs, mechanism%units)))
       case ('user')
         allocate (slot%load, source=procedure_load_type(parameters=mechanism%parameters, n_links=n_links, &
                                                        registered=mechanism%procedures%force))
       end select
       slot%load%place = diagnostics%place(group%span)
       if (get_text(group, 'kind') == 'user' .or. .not. has_name(group, 'law')) return
-      call read_law(document, group, get_text(group, 'law'), mechanism%angle_unit, 1.0_wp, slot%load%law, diagnostics)
+      call read_law(document, group, get_text(group, 'law'), coordinate_units_type(), slot%load%law, diagnostics)
       if (allocated(slot%load%law)) slot%load%law%place = diagnostics%place(group%span)
     end associate
   end subroutine read_load
@@ -96,20 +95,16 @@ contains
   end function spring_load
 
   !> A load on a coordinate. Only the position of rest is an angle in the unit of the file; stiffness and damping are per rad.
-  function coordinate_load(group, pairs, angle_unit) result(load)
-    type(group_type), intent(in) :: group         !< the group of the data file
-    type(pair_slot_type), intent(in) :: pairs(:)  !< (M) pairs by coordinate; a slot is empty where its group has an error
-    real(wp), intent(in) :: angle_unit            !< unit of angles in the file [rad]
+  function coordinate_load(group, unit) result(load)
+    type(group_type), intent(in) :: group               !< the group of the data file
+    type(coordinate_units_type), intent(in) :: unit     !< units of the coordinate in the file
     type(coordinate_load_type) :: load
 
     load%coordinate = get_integer(group, 'coordinate')
-    load%stiffness = get_real(group, 'stiffness')
-    load%damping = get_real(group, 'damping')
-    load%force = get_real(group, 'force')
-    load%rest = get_real(group, 'rest')
-    if (load%coordinate > size(pairs)) return
-    if (.not. allocated(pairs(load%coordinate)%pair)) return
-    if (pairs(load%coordinate)%pair%angular) load%rest = load%rest*angle_unit
+    load%stiffness = unit%slope*get_real(group, 'stiffness')
+    load%damping = unit%slope*get_real(group, 'damping')
+    load%force = unit%force*get_real(group, 'force')
+    load%rest = unit%position*get_real(group, 'rest')
   end function coordinate_load
 
   !> Report a load, or a motor, on a coordinate that does not exist.

@@ -7,8 +7,9 @@ module mech9_motion_reader
   use mech9_point, only: point_type
   use mech9_problem, only: initial_type
   use mech9_document, only: document_type, group_type
+  use mech9_units, only: units_type, coordinate_units_type
   use mech9_lookup, only: groups_named, has_name, get_integer, get_real, get_reals, get_text, span_of
-  use mech9_drive_reader, only: unit_of_coordinate
+  use mech9_drive_reader, only: units_of_coordinate
   use mech9_name_check, only: check_name
   use mech9_diagnostics, only: diagnostics_type
   implicit none
@@ -18,15 +19,15 @@ module mech9_motion_reader
 contains
 
   !> All groups &initial: positions and velocities that are given, in rad and m.
-  pure subroutine read_initial(document, partition, pairs, angle_unit, initial, diagnostics)
+  pure subroutine read_initial(document, partition, pairs, units, initial, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
     type(partition_type), intent(in) :: partition         !< the kinds of the coordinates; none where the structure is unknown
     type(pair_slot_type), intent(in) :: pairs(:)          !< (M) pairs by coordinate; a slot is empty where its group has an error
-    real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
+    type(units_type), intent(in) :: units                 !< units of the file
     type(initial_type), intent(out) :: initial            !< positions and velocities at the start; zero where not given
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer, allocatable :: numbers(:)
-    real(wp) :: unit
+    type(coordinate_units_type) :: unit
     integer :: i, k, m
 
     m = size(partition%kind)
@@ -45,9 +46,9 @@ contains
         if (has_name(group, 'velocity') .and. .not. partition%is_independent(k)) &
           call diagnostics%add(span_of(group, 'velocity'), 'coordinate '//to_text(k)//' is dependent: its velocity '// &
                                'follows from the others; leave it out')
-        unit = unit_of_coordinate(group, pairs, angle_unit)
-        initial%position(k) = unit*get_real(group, 'position')
-        initial%velocity(k) = unit*get_real(group, 'velocity')
+        unit = units_of_coordinate(group, pairs, units)
+        initial%position(k) = unit%position*get_real(group, 'position')
+        initial%velocity(k) = unit%rate*get_real(group, 'velocity')
         initial%position_given(k) = has_name(group, 'position')
         initial%velocity_given(k) = has_name(group, 'velocity')
       end associate

@@ -8,8 +8,9 @@ module mech9_motor_reader
   use mech9_dc_motor, only: dc_motor_type
   use mech9_pid_motor, only: pid_motor_type
   use mech9_document, only: document_type, group_type
+  use mech9_units, only: units_type, coordinate_units_type
   use mech9_lookup, only: groups_named, has_name, get_integer, get_real, get_text, span_of
-  use mech9_drive_reader, only: read_law, unit_of_coordinate
+  use mech9_drive_reader, only: read_law, units_of_coordinate
   use mech9_diagnostics, only: diagnostics_type
   use mech9_load_reader, only: check_coordinate
   implicit none
@@ -19,10 +20,10 @@ module mech9_motor_reader
 contains
 
   !> All motors, in the order of the file.
-  subroutine read_motors(document, pairs, angle_unit, motors, diagnostics)
+  subroutine read_motors(document, pairs, units, motors, diagnostics)
     type(document_type), intent(in) :: document                     !< the data file as groups and items
     type(pair_slot_type), intent(in) :: pairs(:)                    !< (M) pairs by coordinate; size 0 where they are not known
-    real(wp), intent(in) :: angle_unit                              !< unit of angles in the file [rad]
+    type(units_type), intent(in) :: units                           !< units of the file
     type(motor_slot_type), allocatable, intent(out) :: motors(:)    !< gets the motors
     type(diagnostics_type), intent(inout) :: diagnostics            !< gets the errors
     class(motor_type), allocatable :: motor
@@ -35,9 +36,9 @@ contains
       associate (group => document%groups(numbers(i)))
         call check_coordinate(group, size(pairs), diagnostics)
         if (get_text(group, 'kind') == 'dc') then
-          call read_dc_motor(document, group, angle_unit, motor, diagnostics)
+          call read_dc_motor(document, group, units_of_coordinate(group, pairs, units), motor, diagnostics)
         else
-          call read_pid_motor(document, group, pairs, angle_unit, motor, diagnostics)
+          call read_pid_motor(document, group, units_of_coordinate(group, pairs, units), motor, diagnostics)
         end if
         motor%coordinate = get_integer(group, 'coordinate')
         motor%number = i
@@ -73,10 +74,10 @@ contains
   end subroutine check_integrals
 
   !> A direct-current motor.
-  subroutine read_dc_motor(document, group, angle_unit, motor, diagnostics)
+  subroutine read_dc_motor(document, group, unit, motor, diagnostics)
     type(document_type), intent(in) :: document               !< the data file as groups and items
     type(group_type), intent(in) :: group                     !< the group of the data file
-    real(wp), intent(in) :: angle_unit                        !< unit of angles in the file [rad]
+    type(coordinate_units_type), intent(in) :: unit           !< units of its coordinate in the file
     class(motor_type), allocatable, intent(out) :: motor      !< the motor
     type(diagnostics_type), intent(inout) :: diagnostics      !< gets the errors
     type(dc_motor_type) :: dc
@@ -85,9 +86,9 @@ contains
     if (has_name(group, 'voltage')) dc%voltage = get_real(group, 'voltage')
     dc%resistance = get_real(group, 'resistance')
     dc%inductance = get_real(group, 'inductance')
-    dc%constant = get_real(group, 'constant')
+    dc%constant = unit%force*get_real(group, 'constant')
     dc%gear_ratio = get_real(group, 'gear_ratio')
-    call read_law(document, group, get_text(group, 'law'), angle_unit, 1.0_wp, dc%law, diagnostics)
+    call read_law(document, group, get_text(group, 'law'), coordinate_units_type(), dc%law, diagnostics)
     if (.not. (has_law(group) .or. has_name(group, 'voltage'))) &
       call diagnostics%add(group%span, 'the motor has no voltage; give voltage= (0 for a short circuit), or law= and its names')
     if (.not. abs(dc%gear_ratio) > 0.0_wp) &
@@ -97,26 +98,23 @@ contains
   end subroutine read_dc_motor
 
   !> A motor that a PID controller sets.
-  subroutine read_pid_motor(document, group, pairs, angle_unit, motor, diagnostics)
+  subroutine read_pid_motor(document, group, unit, motor, diagnostics)
     type(document_type), intent(in) :: document               !< the data file as groups and items
     type(group_type), intent(in) :: group                     !< the group of the data file
-    type(pair_slot_type), intent(in) :: pairs(:)              !< (M) pairs by coordinate; size 0 where they are not known
-    real(wp), intent(in) :: angle_unit                        !< unit of angles in the file [rad]
+    type(coordinate_units_type), intent(in) :: unit           !< units of its coordinate in the file
     class(motor_type), allocatable, intent(out) :: motor      !< the motor
     type(diagnostics_type), intent(inout) :: diagnostics      !< gets the errors
     type(pid_motor_type) :: pid
     type(polynomial_law_type) :: constant
-    real(wp) :: unit
 
-    pid%proportional = get_real(group, 'proportional')
-    pid%integral = get_real(group, 'integral')
-    pid%derivative = get_real(group, 'derivative')
-    if (has_name(group, 'limit')) pid%limit = get_real(group, 'limit')
-    unit = unit_of_coordinate(group, pairs, angle_unit)
+    pid%proportional = unit%slope*get_real(group, 'proportional')
+    pid%integral = unit%slope*get_real(group, 'integral')
+    pid%derivative = unit%slope*get_real(group, 'derivative')
+    if (has_name(group, 'limit')) pid%limit = unit%force*get_real(group, 'limit')
     if (has_law(group)) then
-      call read_law(document, group, get_text(group, 'law'), angle_unit, unit, pid%law, diagnostics)
+      call read_law(document, group, get_text(group, 'law'), unit, pid%law, diagnostics)
     else if (has_name(group, 'setpoint')) then
-      constant%coefficients = [unit*get_real(group, 'setpoint')]
+      constant%coefficients = [unit%position*get_real(group, 'setpoint')]
       allocate (pid%law, source=constant)
     end if
     if (allocated(pid%law)) pid%law%coordinate = get_integer(group, 'coordinate')

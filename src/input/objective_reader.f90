@@ -99,7 +99,7 @@ contains
     objective%components = size(rows, 1)
     if (objective%timing == timing_given) objective%components = size(rows, 1) - 1
     allocate (objective%targets(3, n), objective%at(n), source=0.0_wp)
-    objective%targets(:objective%components, :) = rows(size(rows, 1) - objective%components + 1:, :)
+    objective%targets(:objective%components, :) = model%mechanism%units%length*rows(size(rows, 1) - objective%components + 1:, :)
     if (objective%timing == timing_free) return
     objective%at = rows(1, :)
     call check_times(group, model, objective%at, diagnostics)
@@ -181,9 +181,9 @@ contains
     first = merge(1, 0, objective%timing == timing_given)
     objective%components = (size(rows, 1) - first)/2 + modulo(size(rows, 1) - first, 2)
     allocate (objective%targets(3, n), objective%turns(3, n), objective%at(n), source=0.0_wp)
-    objective%targets(:objective%components, :) = rows(first + 1:first + objective%components, :)
+    objective%targets(:objective%components, :) = model%mechanism%units%length*rows(first + 1:first + objective%components, :)
     j = size(rows, 1) - first - objective%components
-    objective%turns(4 - j:, :) = rows(size(rows, 1) - j + 1:, :)*model%mechanism%angle_unit
+    objective%turns(4 - j:, :) = rows(size(rows, 1) - j + 1:, :)*model%mechanism%units%angle
     if (first == 1) objective%at = rows(1, :)
     if (first == 1) call check_times(group, model, objective%at, diagnostics)
     objective%length = 0.0_wp

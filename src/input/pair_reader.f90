@@ -20,6 +20,7 @@ module mech9_pair_reader
   use mech9_joint_reader, only: read_joint_pairs, joint_of_group
   use mech9_compound_joint, only: compound_joint_type, is_compound
   use mech9_structure, only: structure_type
+  use mech9_units, only: units_type
   use mech9_mechanism, only: mechanism_type
   use mech9_table_file, only: read_curve_file, beside
   use mech9_explanation, only: explain
@@ -95,7 +96,7 @@ contains
   subroutine read_pair(data_file, group, mechanism, slot, diagnostics)
     character(len=*), intent(in) :: data_file             !< path of the data file
     type(group_type), intent(in) :: group                 !< the group of the data file
-    type(mechanism_type), intent(in) :: mechanism         !< with its unit of angles and the numbers for the user's procedures
+    type(mechanism_type), intent(in) :: mechanism         !< with its units and the numbers for the user's procedures
     type(pair_slot_type), intent(out) :: slot             !< gets the pair; stays empty where an error was reported
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(screw_pair_type) :: screw
@@ -116,12 +117,12 @@ contains
       end if
       allocate (slot%pair, source=procedure_pair)
     else if (kind == 'path') then
-      call read_path(data_file, group, path, diagnostics)
+      call read_path(data_file, group, mechanism%units%length, path, diagnostics)
       if (diagnostics%count > found) return
       allocate (slot%pair, source=path)
     else
       if (has_name(group, 'dh')) then
-        call read_dh(group, kind, mechanism%angle_unit, screw, diagnostics)
+        call read_dh(group, kind, mechanism%units, screw, diagnostics)
       else
         call read_frames(group, kind, screw, diagnostics)
       end if
@@ -136,10 +137,10 @@ contains
   end subroutine read_pair
 
   !> A pair in Denavit-Hartenberg form.
-  pure subroutine read_dh(group, kind, angle_unit, pair, diagnostics)
+  pure subroutine read_dh(group, kind, units, pair, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
     character(len=*), intent(in) :: kind                  !< of the pair
-    real(wp), intent(in) :: angle_unit                    !< unit of angles in the file [rad]
+    type(units_type), intent(in) :: units                 !< units of the file
     type(screw_pair_type), intent(out) :: pair            !< the pair of screw motion
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     character(len=12), parameter :: others(6) = [character(len=12) :: 'point', 'axis', 'zero', 'moving_point', &
@@ -153,7 +154,7 @@ contains
                              ''' cannot stand beside ''dh'', which says where the pair is; leave one of them out')
     end do
     dh = get_reals(group, 'dh')
-    associate (a => dh(1), alpha => angle_unit*dh(2), d => dh(3), theta => angle_unit*dh(4))
+    associate (a => units%length*dh(1), alpha => units%angle*dh(2), d => units%length*dh(3), theta => units%angle*dh(4))
       select case (kind)
       case ('revolute')
         pair = revolute_pair_dh(a, alpha, d, theta)
@@ -192,9 +193,10 @@ contains
   end subroutine read_frames
 
   !> A pair along the curve through the points of a file.
-  subroutine read_path(data_file, group, pair, diagnostics)
+  subroutine read_path(data_file, group, unit, pair, diagnostics)
     character(len=*), intent(in) :: data_file             !< path of the data file
     type(group_type), intent(in) :: group                 !< the group of the data file
+    real(wp), intent(in) :: unit                          !< unit of lengths in the files [m]
     type(path_pair_type), intent(out) :: pair             !< the pair along a curve
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(space_curve_type) :: curve
@@ -214,7 +216,7 @@ contains
     call make_frame(group, 'moving_', real_or(group, 'moving_point', [0.0_wp, 0.0_wp, 0.0_wp]), axis, zero, moving, diagnostics)
     call read_curve_file(beside(data_file, get_text(group, 'file')), span_of(group, 'file', 1), get_integers(group, 'columns'), &
                          points, spans, ok, diagnostics)
-    scale = get_real(group, 'scale')
+    scale = unit*get_real(group, 'scale')
     if (ok) then
       points = scale*points
       call read_curve(group, points, spans, curve, diagnostics)

@@ -5,6 +5,7 @@ module mech9_parameter_reader
   use mech9_source, only: span_type
   use mech9_grammar, only: item_table
   use mech9_document, only: document_type, group_type, value_real
+  use mech9_item_units, only: scale_items
   use mech9_lookup, only: groups_named, find_item, has_name, count_values, get_integer, get_real, get_reals, get_text, span_of
   use mech9_item_check, only: is_in_range, is_sensible
   use mech9_named_number, only: number_place_type, find_number
@@ -36,6 +37,7 @@ contains
       call check_targets(document, parameters(:i), numbers(i), diagnostics)
       if (diagnostics%count == found) call find_value(document, numbers(i), parameters(i), diagnostics)
     end do
+    call scale_items(document)      ! of numbers that have their defaults, too
     if (diagnostics%count == found) call place_parameters(document, parameters, diagnostics)
   end subroutine read_parameters
 

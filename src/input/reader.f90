@@ -1,7 +1,7 @@
 !> The mechanism of a document, with all data checked.
 module mech9_reader
   use mech9_program_kind, only: dynamics
-  use mech9_kinds, only: wp, radians_per_degree
+  use mech9_kinds, only: wp
   use mech9_text, only: to_text
   use mech9_structure, only: structure_type
   use mech9_partition, only: partition_type
@@ -11,6 +11,7 @@ module mech9_reader
   use mech9_model, only: model_type
   use mech9_document, only: document_type, group_type
   use mech9_checker, only: check_document
+  use mech9_item_units, only: units_of_document
   use mech9_lookup, only: groups_named, group_or_empty, has_group, has_name, get_integer, get_real, get_reals, get_text, span_of
   use mech9_parameter_reader, only: read_parameters
   use mech9_structure_reader, only: read_structure
@@ -96,7 +97,7 @@ contains
     if (.not. known) call forget(model%mechanism%structure, model%problem%partition)
     call read_parts(document, model%mechanism, model%problem, model%request, diagnostics)
     if (model%program == dynamics) then
-      call read_motors(document, model%mechanism%pairs, model%mechanism%angle_unit, model%mechanism%motors, diagnostics)
+      call read_motors(document, model%mechanism%pairs, model%mechanism%units, model%mechanism%motors, diagnostics)
     else if (.not. allocated(model%mechanism%motors)) then
       allocate (model%mechanism%motors(0))
     end if
@@ -123,7 +124,7 @@ contains
 
     associate (m => mechanism)
       call read_pairs(document, m, diagnostics)
-      call read_initial(document, problem%partition, m%pairs, m%angle_unit, problem%initial, diagnostics)
+      call read_initial(document, problem%partition, m%pairs, m%units, problem%initial, diagnostics)
       call read_couplings(document, problem%initial%position, m, diagnostics)
       call read_points(document, m%structure%shown_links(), m%points, diagnostics)
       call read_drives(document, m, request%time%start, problem%partition, problem%drives, diagnostics)
@@ -153,7 +154,7 @@ contains
                          '(--structure shows the structure alone)')
   end subroutine check_pairs_given
 
-  !> Read the settings of the mechanism that do not refer to its structure: title, unit of angles, tolerance, and numbers of
+  !> Read the settings of the mechanism that do not refer to its structure: title, units, tolerance, and numbers of
   !> the user.
   pure subroutine read_settings(document, mechanism, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
@@ -163,7 +164,7 @@ contains
 
     group = group_or_empty(document, 'mechanism')
     mechanism%title = get_text(group, 'title')
-    if (get_text(group, 'angle_unit') == 'deg') mechanism%angle_unit = radians_per_degree
+    mechanism%units = units_of_document(document)
     mechanism%data_tolerance = get_real(group, 'data_tolerance')
     if (mechanism%data_tolerance > largest_data_tolerance) &
       call diagnostics%add(span_of(group, 'data_tolerance', 1), 'data_tolerance is at most 1e-3: chains that are less exact '// &

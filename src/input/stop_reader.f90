@@ -2,6 +2,7 @@
 module mech9_stop_reader
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
+  use mech9_units, only: coordinate_units_type
   use mech9_mechanism, only: mechanism_type
   use mech9_request, only: time_grid_type
   use mech9_stop, only: stop_type
@@ -9,7 +10,7 @@ module mech9_stop_reader
   use mech9_load, only: load_slot_type, append_loads
   use mech9_document, only: document_type, group_type
   use mech9_lookup, only: groups_named, has_name, get_integer, get_real, span_of
-  use mech9_drive_reader, only: unit_of_coordinate
+  use mech9_drive_reader, only: units_of_coordinate
   use mech9_diagnostics, only: diagnostics_type
   use mech9_load_reader, only: check_coordinate
   implicit none
@@ -32,7 +33,7 @@ contains
     do i = 1, size(numbers)
       associate (group => document%groups(numbers(i)), stop => mechanism%stops(i))
         call check_coordinate(group, size(mechanism%pairs), diagnostics)
-        call read_stop(group, unit_of_coordinate(group, mechanism%pairs, mechanism%angle_unit), stop)
+        call read_stop(group, units_of_coordinate(group, mechanism%pairs, mechanism%units), stop)
         stop%place = diagnostics%place(group%span)
         call check_stop(group, stop, diagnostics)
         call check_others(group, i, mechanism%stops, diagnostics)
@@ -46,18 +47,21 @@ contains
 
   !> The stop of one group.
   pure subroutine read_stop(group, unit, stop)
-    type(group_type), intent(in) :: group   !< the group of the data file
-    real(wp), intent(in) :: unit            !< unit of the coordinate in the file [rad or m]
-    type(stop_type), intent(inout) :: stop  !< gets its numbers
+    type(group_type), intent(in) :: group             !< the group of the data file
+    type(coordinate_units_type), intent(in) :: unit   !< units of the coordinate in the file
+    type(stop_type), intent(inout) :: stop            !< gets its numbers
 
     stop%coordinate = get_integer(group, 'coordinate')
-    if (has_name(group, 'low')) stop%ends(1) = unit*get_real(group, 'low')
-    if (has_name(group, 'high')) stop%ends(2) = unit*get_real(group, 'high')
+    if (has_name(group, 'low')) stop%ends(1) = unit%position*get_real(group, 'low')
+    if (has_name(group, 'high')) stop%ends(2) = unit%position*get_real(group, 'high')
     stop%restitution = get_real(group, 'restitution')
     stop%is_rigid = .not. has_name(group, 'stiffness')
-    if (.not. stop%is_rigid) stop%stiffness = get_real(group, 'stiffness')
-    stop%damping = get_real(group, 'damping')
     stop%exponent = get_real(group, 'exponent')
+    ! penetrations of angles are in rad, whatever the unit of angles
+    associate (depth => unit%force/unit%slope)
+      if (.not. stop%is_rigid) stop%stiffness = unit%force/depth**stop%exponent*get_real(group, 'stiffness')
+      stop%damping = unit%slope/depth**stop%exponent*get_real(group, 'damping')
+    end associate
   end subroutine read_stop
 
   !> Report a stop without ends, with ends in the wrong order, or with numbers of both kinds.

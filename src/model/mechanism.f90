@@ -1,6 +1,7 @@
 !> A mechanism: its structure, the geometry of its pairs, its masses and the loads on it, whatever problem is posed on it.
 module mech9_mechanism
   use mech9_kinds, only: wp
+  use mech9_units, only: units_type
   use mech9_structure, only: structure_type
   use mech9_pair, only: pair_slot_type
   use mech9_point, only: point_type
@@ -16,11 +17,10 @@ module mech9_mechanism
   private
   public :: mechanism_type
 
-  !> Lengths in m, masses in kg, angles in rad inside the program, whatever unit the file uses.
+  !> Lengths in m, masses in kg, forces in N, angles in rad inside the program, whatever units the file uses.
   type :: mechanism_type
     character(len=:), allocatable :: title
-    !> Radians in one unit of angle of the data file and of the results: 1, or pi/180.
-    real(wp) :: angle_unit = 1.0_wp
+    type(units_type) :: units                         !< of the data file and of the results
     !> Allowed residual of redundant equations, for dimensions of few digits: a part of the mechanism's size, and rad.
     real(wp) :: data_tolerance = 0.0_wp
     type(structure_type) :: structure

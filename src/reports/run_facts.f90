@@ -2,6 +2,7 @@
 module mech9_run_facts
   use mech9_kinds, only: wp
   use mech9_facts, only: facts_type
+  use mech9_units, only: units_type
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_block_solver, only: work_count_type, work_of
@@ -29,14 +30,15 @@ contains
     driven => motion%driven()
     free => motion%free()
     if (associated(driven)) then
-      call list_driven(driven%plan, outcome, driven%driven, facts)
+      call list_driven(driven%model%mechanism%units, driven%plan, outcome, driven%driven, facts)
     else if (associated(free)) then
       call list_free(free%model, motion%plan, outcome, free, facts)
     end if
   end subroutine list_run_facts
 
   !> List the facts about a driven motion.
-  subroutine list_driven(plan, outcome, driven, facts)
+  subroutine list_driven(units, plan, outcome, driven, facts)
+    type(units_type), intent(in) :: units                 !< of the results
     type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
     type(run_outcome_type), intent(in) :: outcome         !< number of rows, and the times for solving and writing
     type(driven_motion_type), intent(in) :: driven        !< the driven motion at the end of the run, with its counts
@@ -48,8 +50,9 @@ contains
     call facts%add('halvings', driven%halvings, 'steps that were too long')
     call facts%add('newton_iterations', driven%iterations, 'Newton iterations')
     call facts%add('newton_iterations_per_position', iterations_each(outcome, driven), 'Newton iterations a position', '1')
-    call facts%add('largest_closure', driven%worst_closure, 'largest error of a closed chain', 'm')
-    call facts%add('size', plan%length, 'size of the mechanism, which weighs lengths against angles', 'm')
+    call facts%add('largest_closure', driven%worst_closure/units%length, 'largest error of a closed chain', trim(units%length_name))
+    call facts%add('size', plan%length/units%length, 'size of the mechanism, which weighs lengths against angles', &
+                   trim(units%length_name))
     call facts%add('least_conditioning', driven%conditioning%least, 'least singular value of any block: 0 is singular', '1')
     call facts%add('least_conditioning_time', driven%conditioning%t, 'when it was that', 's')
     call facts%add('least_conditioning_block', driven%conditioning%block, 'block that it was in')
@@ -105,12 +108,18 @@ contains
     call facts%add('convergence_failures', counts%convergence_failures, 'steps made again that did not converge')
     call facts%add('refusals', counts%refusals, 'steps made again for what they met')
     call facts%add('newton_iterations', simulation%motion%iterations(), 'Newton iterations')
-    call facts%add('largest_closure', simulation%worst_closure, 'largest error of a closed chain', 'm')
-    call facts%add('size', plan%length, 'size of the mechanism, which weighs lengths against angles', 'm')
-    if (model%request%output%energies) then
-      call facts%add('energy_at_start', simulation%energy_at_start, 'kinetic and potential energy at the start', 'J')
-      call facts%add('largest_energy_change', simulation%largest_energy_change, 'largest change of that energy', 'J')
-    end if
+    associate (units => model%mechanism%units)
+      call facts%add('largest_closure', simulation%worst_closure/units%length, 'largest error of a closed chain', &
+                     trim(units%length_name))
+      call facts%add('size', plan%length/units%length, 'size of the mechanism, which weighs lengths against angles', &
+                     trim(units%length_name))
+      if (model%request%output%energies) then
+        call facts%add('energy_at_start', simulation%energy_at_start/units%size_of('J'), &
+                       'kinetic and potential energy at the start', trim(units%name_of('J')))
+        call facts%add('largest_energy_change', simulation%largest_energy_change/units%size_of('J'), &
+                       'largest change of that energy', trim(units%name_of('J')))
+      end if
+    end associate
     call facts%add('least_conditioning', simulation%conditioning%least, 'least singular value of any block: 0 is singular', '1')
     call facts%add('least_conditioning_time', simulation%conditioning%t, 'when it was that', 's')
     if (associated(simulation%motion%system)) then

@@ -9,6 +9,8 @@ module mech9_whole_report
   use mech9_plan, only: plan_type
   use mech9_driven_simulation, only: driven_simulation_type
   use mech9_impact_watcher, only: impact_watcher_type
+  use mech9_units, only: units_type
+  use mech9_result_units, only: impulse_unit_of
   use mech9_free_simulation, only: free_simulation_type
   use mech9_model_motion, only: model_motion_type
   use mech9_quantity_record, only: quantity_record_type
@@ -121,8 +123,10 @@ contains
         call json%add('kind', trim(event%kind))
         call json%add('group', trim(event%group))
         call json%add('number', event%number)
-        call json%add('impulse', merge(event%impulse, ieee_value(event%impulse, ieee_quiet_nan), event%has_impulse))
-        if (event%has_impulse .and. allocated(simulation%impacts)) call add_pairs(json, simulation%impacts, event%t)
+        call json%add('impulse', merge(event%impulse/impulse_unit_of(simulation%model%mechanism, trim(event%group), event%number), &
+                                       ieee_value(event%impulse, ieee_quiet_nan), event%has_impulse))
+        if (event%has_impulse .and. allocated(simulation%impacts)) &
+          call add_pairs(json, simulation%model%mechanism%units, simulation%impacts, event%t)
         call json%end_object()
       end associate
     end do
@@ -130,8 +134,9 @@ contains
   end subroutine add_events
 
   !> Add the impulses of pairs by the impacts of one time.
-  subroutine add_pairs(json, impacts, t)
+  subroutine add_pairs(json, units, impacts, t)
     type(json_type), intent(inout) :: json               !< the report, inside the object of an event
+    type(units_type), intent(in) :: units                !< of the results
     class(impact_watcher_type), intent(in) :: impacts    !< the impulses of all impacts
     real(wp), intent(in) :: t                            !< the time [s]
     integer, allocatable :: pairs(:)
@@ -143,8 +148,8 @@ contains
     do i = 1, size(pairs)
       call json%begin_object()
       call json%add('pair', pairs(i))
-      call json%add('force', wrenches(1:3, i))
-      call json%add('moment', wrenches(4:6, i))
+      call json%add('force', wrenches(1:3, i)/units%force)
+      call json%add('moment', wrenches(4:6, i)/(units%force*units%length))
       call json%end_object()
     end do
     call json%end_array()

@@ -29,15 +29,15 @@ contains
     shown = pack([(i, i=1, size(profile%contacts))], profile%at_output .and. profile%contacts%known)
     allocate (rows(size(names), size(shown)))
     do i = 1, size(shown)
-      associate (contact => profile%contacts(shown(i)))
-        rows(:10, i) = [contact%t, contact%angle/unit_of(mechanism, cam%coordinate), contact%profile, contact%pitch, &
-                        contact%radius, merge(1.0_wp, 0.0_wp, contact%undercut)]
+      associate (contact => profile%contacts(shown(i)), length => mechanism%units%length)
+        rows(:10, i) = [contact%t, contact%angle/unit_of(mechanism, cam%coordinate), contact%profile/length, contact%pitch/length, &
+                        contact%radius/length, merge(1.0_wp, 0.0_wp, contact%undercut)]
         n = 10
         if (profile%has_pressure) then
           n = n + 1
-          rows(n, i) = contact%pressure/mechanism%angle_unit
+          rows(n, i) = contact%pressure/mechanism%units%angle
         end if
-        if (cam%flat) rows(n + 1, i) = contact%offset
+        if (cam%flat) rows(n + 1, i) = contact%offset/length
       end associate
     end do
   end subroutine list_cam_rows
@@ -53,7 +53,7 @@ contains
 
     allocate (names(10 + count([has_pressure, cam%flat])), units(10 + count([has_pressure, cam%flat])))
     do i = 1, size(units)
-      units(i)%text = 'm'
+      units(i)%text = trim(mechanism%units%length_name)
     end do
     names(1)%text = 't'
     units(1)%text = 's'
@@ -70,7 +70,7 @@ contains
     if (has_pressure) then
       n = n + 1
       names(n)%text = 'pressure_angle'
-      units(n)%text = trim(merge('rad', 'deg', abs(mechanism%angle_unit - 1.0_wp) <= 0.0_wp))
+      units(n)%text = mechanism%units%angle_name
     end if
     if (cam%flat) names(n + 1)%text = 'offset'
   end subroutine list_columns

@@ -8,11 +8,13 @@ module mech9_columns
   use mech9_motion_view, only: link_motion_type
   use mech9_contact, only: contact_place_type
   use mech9_mechanism, only: mechanism_type
-  use mech9_result_units, only: unit_of, unit_name, force_unit_name
+  use mech9_units, only: units_type
+  use mech9_result_units, only: si_unit, si_force
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_motor_states, only: find_action
   use mech9_motion_changes, only: motion_changes_type
+  use mech9_column_list, only: column_list_type
   use mech9_derivative_columns, only: derivative_columns_type, new_derivative_columns
   use mech9_poses, only: poses_type, poses_of
   use mech9_frame_motion, only: point_motion
@@ -23,20 +25,14 @@ module mech9_columns
 
   !> Time, the recorded coordinates, their rates, their accelerations, and columns for each point: as many
   !> derivatives as are recorded.
-  type :: columns_type
-    type(string_type), allocatable :: names(:)
-    type(string_type), allocatable :: units(:)
-    type(string_type), allocatable :: long_names(:)  !< a few words that describe each column; the name where none were given
-    integer :: count = 0
+  type, extends(column_list_type) :: columns_type
     integer, allocatable :: coordinates(:)  !< numbers of the recorded ones, ascending
-    real(wp), allocatable :: factors(:)     !< (coordinates) factors from the program's units to those of the results
     integer :: derivatives = 2              !< highest derivative that is recorded
     integer :: motion = 0                   !< how many columns, the first ones, belong to time, coordinates and points
     integer, allocatable :: drives(:)       !< driven coordinates whose forces have columns, ascending
     integer, allocatable :: reacting(:)     !< pairs whose wrenches have columns, ascending
     integer :: couplings = 0                !< how many couplings have columns of their forces, after those of pairs
     integer :: motors = 0                   !< how many columns belong to motors, after those of forces
-    real(wp), allocatable :: motor_factors(:)   !< (motors) factors from the program's units to those of the results
     integer :: energies = 0                 !< how many columns belong to energies, after those of motors
     integer :: stops = 0                    !< how many columns belong to stops, after those of energies
     integer :: frictions = 0                !< how many columns belong to frictions, after those of stops
@@ -50,7 +46,7 @@ module mech9_columns
     integer :: varied_poses = 0             !< how many derivatives by parameters stand after the poses: of origins and rotations
     integer :: unrecorded = 0               !< how many derivatives by parameters stand after the poses, for quantities alone
   contains
-    procedure :: append
+    procedure :: convert
     procedure :: append_forces
     procedure :: forces
     procedure :: fill_forces
@@ -81,9 +77,10 @@ module mech9_columns
 contains
 
   !> The columns that every kinematic run records.
-  function kinematic_columns(mechanism, output) result(columns)
+  function kinematic_columns(mechanism, output, units) result(columns)
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
     type(output_settings_type), intent(in) :: output    !< settings of the results
+    type(units_type), intent(in), optional :: units     !< of the results; absent: those of the data file
     type(columns_type) :: columns
     character(len=4), parameter :: orders(3) = ['q   ', 'dq  ', 'ddq ']
     character(len=5), parameter :: per_time(3) = ['     ', '/s   ', '/s^2 ']
@@ -96,28 +93,27 @@ contains
     n = size(columns%coordinates)
     columns%motion = 1 + (columns%derivatives + 1)*(n + 3*size(mechanism%points))
     allocate (columns%names(columns%motion), columns%units(columns%motion), columns%long_names(columns%motion))
-    allocate (columns%factors(n), source=1.0_wp)
+    allocate (columns%scales(columns%motion), source=1.0_wp)
+    columns%system = mechanism%units
+    if (present(units)) columns%system = units
     if (output%poses) columns%poses = poses_of(mechanism)
-    do i = 1, n
-      columns%factors(i) = 1.0_wp/unit_of(mechanism, columns%coordinates(i))
-    end do
-    columns%derived = new_derivative_columns(columns%coordinates, columns%factors, columns%derivatives, size(mechanism%pairs), &
-                                             size(mechanism%points))
     call columns%append('t', 's')
     do order = 1, columns%derivatives + 1
       do i = 1, n
         k = columns%coordinates(i)
-        call columns%append(trim(orders(order))//to_text(k), trim(unit_name(mechanism, k))//trim(per_time(order)))
+        call columns%append_in(trim(orders(order))//to_text(k), trim(si_unit(mechanism%pairs(k)%pair))//trim(per_time(order)))
       end do
     end do
     do i = 1, size(mechanism%points)
       do order = 1, columns%derivatives + 1
         do k = 1, 3
-          call columns%append(mechanism%points(i)%name//'.'//trim(point_orders(order))//directions(k), &
-                              'm'//trim(per_time(order)))
+          call columns%append_in(mechanism%points(i)%name//'.'//trim(point_orders(order))//directions(k), &
+                                 'm'//trim(per_time(order)))
         end do
       end do
     end do
+    columns%derived = new_derivative_columns(columns%coordinates, columns%scales(2:columns%motion), columns%derivatives, &
+                                             size(mechanism%pairs), size(mechanism%points))
   end function kinematic_columns
 
   !> Append the columns of forces: of drives, then of pairs and couplings.
@@ -132,13 +128,13 @@ contains
     self%drives = drives
     self%reacting = reacting
     do i = 1, size(drives)
-      call self%append('F'//to_text(drives(i)), force_unit_name(mechanism, drives(i)), &
-                       'force of the drive of coordinate '//to_text(drives(i)))
+      call self%append_in('F'//to_text(drives(i)), si_force(mechanism%pairs(drives(i))%pair), &
+                          'force of the drive of coordinate '//to_text(drives(i)))
     end do
     do i = 1, size(reacting)
       do j = 1, 2
         do k = 1, 3
-          call self%append('R'//to_text(reacting(i))//'.'//trim(kinds(j))//directions(k), trim(merge('N  ', 'N m', j == 1)))
+          call self%append_in('R'//to_text(reacting(i))//'.'//trim(kinds(j))//directions(k), trim(merge('N  ', 'N m', j == 1)))
         end do
       end do
     end do
@@ -146,8 +142,8 @@ contains
     self%couplings = size(mechanism%couplings)
     do i = 1, self%couplings
       k = mechanism%couplings(i)%coupling%coordinates(2)
-      call self%append('C'//to_text(i), force_unit_name(mechanism, k), &
-                       'force of coupling '//to_text(i)//' on coordinate '//to_text(k))
+      call self%append_in('C'//to_text(i), si_force(mechanism%pairs(k)%pair), &
+                          'force of coupling '//to_text(i)//' on coordinate '//to_text(k))
     end do
   end subroutine append_forces
 
@@ -190,17 +186,13 @@ contains
     integer :: i
 
     self%motors = 2*size(mechanism%motors)
-    allocate (self%motor_factors(self%motors), source=1.0_wp)
     do i = 1, size(mechanism%motors)
       associate (k => mechanism%motors(i)%motor%coordinate, state => mechanism%motors(i)%motor%kind_of_state())
         unit = state%unit
-        if (state%by_coordinate) then
-          self%motor_factors(2*i - 1) = 1.0_wp/unit_of(mechanism, k)
-          unit = trim(unit_name(mechanism, k))//' '//state%unit
-        end if
-        call self%append('M'//to_text(i)//'.'//trim(state%name), unit, trim(state%meaning)//' of motor '//to_text(i))
-        call self%append('M'//to_text(i)//'.torque', force_unit_name(mechanism, k), &
-                         'force of motor '//to_text(i)//' on coordinate '//to_text(k))
+        if (state%by_coordinate) unit = trim(si_unit(mechanism%pairs(k)%pair))//' '//state%unit
+        call self%append_in('M'//to_text(i)//'.'//trim(state%name), unit, trim(state%meaning)//' of motor '//to_text(i))
+        call self%append_in('M'//to_text(i)//'.torque', si_force(mechanism%pairs(k)%pair), &
+                            'force of motor '//to_text(i)//' on coordinate '//to_text(k))
       end associate
     end do
   end subroutine append_motors
@@ -219,7 +211,7 @@ contains
       call find_action(mechanism, i, state, action, err)
       if (allocated(err)) return
       at = self%motion + self%forces() + 2*i
-      row(at - 1) = action%value*self%motor_factors(2*i - 1)
+      row(at - 1) = action%value
       row(at) = action%force
     end do
   end subroutine fill_motors
@@ -233,8 +225,8 @@ contains
     self%stops = size(mechanism%stops)
     do i = 1, self%stops
       associate (k => mechanism%stops(i)%coordinate)
-        call self%append('S'//to_text(i), force_unit_name(mechanism, k), &
-                         'force of stop '//to_text(i)//' on coordinate '//to_text(k))
+        call self%append_in('S'//to_text(i), si_force(mechanism%pairs(k)%pair), &
+                            'force of stop '//to_text(i)//' on coordinate '//to_text(k))
       end associate
     end do
   end subroutine append_stops
@@ -272,10 +264,11 @@ contains
     self%frictions = merge(3, 2, heats)*size(mechanism%frictions)
     do i = 1, size(mechanism%frictions)
       associate (k => mechanism%frictions(i)%coordinate)
-        call self%append('R'//to_text(k)//'.friction', force_unit_name(mechanism, k), 'friction on coordinate '//to_text(k))
-        call self%append('R'//to_text(k)//'.loss', 'W', 'power that the friction of coordinate '//to_text(k)//' takes')
-        if (heats) call self%append('R'//to_text(k)//'.heat', 'J', &
-                                    'energy that the friction of coordinate '//to_text(k)//' has taken')
+        call self%append_in('R'//to_text(k)//'.friction', si_force(mechanism%pairs(k)%pair), &
+                            'friction on coordinate '//to_text(k))
+        call self%append_in('R'//to_text(k)//'.loss', 'W', 'power that the friction of coordinate '//to_text(k)//' takes')
+        if (heats) call self%append_in('R'//to_text(k)//'.heat', 'J', &
+                                       'energy that the friction of coordinate '//to_text(k)//' has taken')
       end associate
     end do
   end subroutine append_frictions
@@ -310,9 +303,9 @@ contains
     if (.not. mechanism%has_contacts()) return
     self%contacts = 3*size(mechanism%contacts)
     do i = 1, size(mechanism%contacts)
-      call self%append('K'//to_text(i)//'.gap', 'm', 'gap of contact '//to_text(i))
-      call self%append('K'//to_text(i)//'.fn', 'N', 'normal force of contact '//to_text(i))
-      call self%append('K'//to_text(i)//'.ft', 'N', 'friction of contact '//to_text(i))
+      call self%append_in('K'//to_text(i)//'.gap', 'm', 'gap of contact '//to_text(i))
+      call self%append_in('K'//to_text(i)//'.fn', 'N', 'normal force of contact '//to_text(i))
+      call self%append_in('K'//to_text(i)//'.ft', 'N', 'friction of contact '//to_text(i))
     end do
   end subroutine append_contacts
 
@@ -347,9 +340,9 @@ contains
   pure subroutine append_energies(self)
     class(columns_type), intent(inout) :: self       !< the columns
 
-    call self%append('E.kinetic', 'J', 'kinetic energy')
-    call self%append('E.potential', 'J', 'potential energy of gravity and springs')
-    call self%append('E.total', 'J', 'kinetic and potential energy')
+    call self%append_in('E.kinetic', 'J', 'kinetic energy')
+    call self%append_in('E.potential', 'J', 'potential energy of gravity and springs')
+    call self%append_in('E.total', 'J', 'kinetic and potential energy')
     self%energies = 3
   end subroutine append_energies
 
@@ -459,7 +452,7 @@ contains
 
     associate (n => size(values, 1), before => before_sensitivities(self) + (self%motion - 1)*size(values, 1))
       do i = 1, size(values, 2)
-        row(before + (i - 1)*n + 1:before + i*n) = values(:, i)
+        row(before + (i - 1)*n + 1:before + i*n) = values(:, i)*self%scales(self%motion + i)
       end do
     end associate
   end subroutine fill_beyond_motion
@@ -469,43 +462,30 @@ contains
     class(columns_type), intent(in) :: self        !< the columns
     real(wp), intent(in) :: values(:, :)           !< (P,12 links) derivatives of all origins, then of all rotations by rows
     real(wp), intent(inout) :: row(:)              !< numbers of one row, one for each column
-    integer :: before
+    integer :: before, n
 
     before = self%count + self%poses%width()
     row(before + 1:before + self%varied_poses) = reshape(values, [self%varied_poses])
+    n = size(values, 1)*3*self%poses%n_links
+    if (self%converts) row(before + 1:before + n) = row(before + 1:before + n)/self%system%length
   end subroutine fill_varied_poses
 
-  !> Append a column.
-  pure subroutine append(self, name, unit, long_name)
-    class(columns_type), intent(inout) :: self           !< the columns
-    character(len=*), intent(in) :: name                 !< heading of the column
-    character(len=*), intent(in) :: unit                 !< unit of its numbers
-    character(len=*), intent(in), optional :: long_name  !< a few words that describe it; absent: the heading
+  !> Convert a row into the units of the results, apart from its derivatives by parameters.
+  pure subroutine convert(self, row)
+    class(columns_type), intent(in) :: self   !< the columns
+    real(wp), intent(inout) :: row(:)         !< numbers of one row, one for each column
+    integer :: n, links
 
-    if (self%count == size(self%names)) then
-      call grow(self%names)
-      call grow(self%units)
-      call grow(self%long_names)
-    end if
-    self%count = self%count + 1
-    self%names(self%count)%text = name
-    self%units(self%count)%text = trim(unit)
-    self%long_names(self%count)%text = name
-    if (present(long_name)) self%long_names(self%count)%text = long_name
-  end subroutine append
-
-  !> Make room for as many texts again.
-  pure subroutine grow(texts)
-    type(string_type), allocatable, intent(inout) :: texts(:)  !< texts, with more places afterwards
-    type(string_type), allocatable :: grown(:)
-    integer :: i
-
-    allocate (grown(2*size(texts) + 8))
-    do i = 1, size(texts)
-      call move_alloc(texts(i)%text, grown(i)%text)
-    end do
-    call move_alloc(grown, texts)
-  end subroutine grow
+    if (.not. self%converts) return
+    n = self%count - self%sensitivities
+    row(:n) = row(:n)*self%scales(:n)
+    n = self%count
+    links = self%poses%n_links
+    if (links == 0) return
+    ! origins, rotations, vertices
+    row(n + 1:n + 3*links) = row(n + 1:n + 3*links)/self%system%length
+    row(n + 12*links + 1:n + self%poses%width()) = row(n + 12*links + 1:n + self%poses%width())/self%system%length
+  end subroutine convert
 
   !> The number of columns, poses with their derivatives, and derivatives that are not recorded included.
   pure integer function width(self)
@@ -546,7 +526,7 @@ contains
     if (self%poses%n_links > 0) call self%poses%fill(plan, state, row(self%count + 1:))
   end subroutine fill_poses
 
-  !> Fill the columns of the motion in a row with those of a state.
+  !> Fill the columns of the motion in a row with those of a state, in the program's units.
   pure subroutine fill(self, mechanism, plan, state, row)
     class(columns_type), intent(in) :: self        !< the columns
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
@@ -557,9 +537,9 @@ contains
 
     n = size(self%coordinates)
     row(1) = state%t
-    call take(n, self%coordinates, self%factors, state%q, row(2:n + 1))
-    if (self%derivatives > 0) call take(n, self%coordinates, self%factors, state%dq, row(n + 2:2*n + 1))
-    if (self%derivatives > 1) call take(n, self%coordinates, self%factors, state%ddq, row(2*n + 2:3*n + 1))
+    call take(n, self%coordinates, state%q, row(2:n + 1))
+    if (self%derivatives > 0) call take(n, self%coordinates, state%dq, row(n + 2:2*n + 1))
+    if (self%derivatives > 1) call take(n, self%coordinates, state%ddq, row(2*n + 2:3*n + 1))
     used = 1 + (self%derivatives + 1)*n
     do i = 1, size(mechanism%points)
       associate (point => mechanism%points(i))
@@ -577,17 +557,16 @@ contains
     end do
   end subroutine fill
 
-  !> Select the recorded coordinates and convert them to the units of the results.
-  pure subroutine take(n, coordinates, factors, values, columns)
+  !> Select the recorded coordinates.
+  pure subroutine take(n, coordinates, values, columns)
     integer, intent(in) :: n               !< how many coordinates are recorded
     integer, intent(in) :: coordinates(n)  !< (n) numbers of the recorded coordinates
-    real(wp), intent(in) :: factors(n)     !< (n) factors from the program's units to those of the results
     real(wp), intent(in) :: values(*)      !< (M) values of all coordinates, rad or m or their rates
-    real(wp), intent(inout) :: columns(n)  !< gets the recorded values, in the units of the results
+    real(wp), intent(inout) :: columns(n)  !< gets the recorded values
     integer :: i
 
     do i = 1, n
-      columns(i) = values(coordinates(i))*factors(i)
+      columns(i) = values(coordinates(i))
     end do
   end subroutine take
 end module mech9_columns

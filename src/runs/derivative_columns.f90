@@ -21,7 +21,7 @@ contains
   !> The columns of recorded coordinates and of all points.
   pure function new_derivative_columns(coordinates, factors, highest, n_coordinates, n_points) result(columns)
     integer, intent(in) :: coordinates(:)   !< numbers of the recorded coordinates
-    real(wp), intent(in) :: factors(:)      !< from the program's units to those of the results
+    real(wp), intent(in) :: factors(:)      !< (columns) from the program's units to those of the results
     integer, intent(in) :: highest          !< order of the highest derivative in time
     integer, intent(in) :: n_coordinates    !< number of all coordinates
     integer, intent(in) :: n_points         !< number of points
@@ -30,7 +30,7 @@ contains
 
     columns%places = [((place_of_coordinate(coordinates(i), order), i=1, size(coordinates)), order=0, highest), &
                       (((place_of_point(n_coordinates, i, order, axis), axis=1, 3), order=0, highest), i=1, n_points)]
-    columns%factors = [(factors, order=0, highest), (1.0_wp, i=1, 3*(highest + 1)*n_points)]
+    columns%factors = factors
   end function new_derivative_columns
 
   !> Fill the columns of derivatives in rows that follow each other.

@@ -8,7 +8,7 @@ module mech9_equilibrium_rows
   use mech9_state, only: state_type
   use mech9_reactions, only: reactions_type
   use mech9_single_reactions, only: find_single_reactions
-  use mech9_result_units, only: unit_of, unit_name
+  use mech9_result_units, only: si_unit, unit_name
   use mech9_columns, only: columns_type
   use mech9_force_record, only: force_record_type
   use mech9_linearised_equilibrium, only: equilibrium_type
@@ -27,9 +27,10 @@ contains
     integer :: k
 
     allocate (columns%names(0), columns%units(0), columns%long_names(0))
+    columns%system = model%mechanism%units
     call columns%append('equilibrium', '', 'number of the position of equilibrium')
     do k = 1, size(model%mechanism%pairs)
-      call columns%append('q'//to_text(k), trim(unit_name(model%mechanism, k)))
+      call columns%append_in('q'//to_text(k), si_unit(model%mechanism%pairs(k)%pair))
     end do
     columns%motion = columns%count
     call forces%begin(model, columns)
@@ -53,7 +54,7 @@ contains
     do i = 1, size(list)
       rows(1, i) = i
       do k = 1, m
-        rows(1 + k, i) = list(i)%resting%state%q(k)/unit_of(model%mechanism, k)
+        rows(1 + k, i) = list(i)%resting%state%q(k)
       end do
       if (columns%forces() > 0) call fill_forces(model, columns, list(i), rows(:, i), err)
       if (.not. allocated(err)) call columns%fill_motors(model%mechanism, list(i)%resting%state, rows(:, i), err)
@@ -61,6 +62,7 @@ contains
       call columns%fill_stops(model%mechanism, list(i)%resting%state, rows(:, i))
       rows(columns%count - 1, i) = merge(1.0_wp, 0.0_wp, list(i)%is_stable)
       rows(columns%count, i) = list(i)%modes%growth
+      call columns%convert(rows(:, i))
     end do
   end subroutine rows_of_equilibria
 

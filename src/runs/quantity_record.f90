@@ -70,6 +70,7 @@ contains
         call find_column(quantity, model, columns, tracked%column, err)
         if (allocated(err)) return
         call columns%family_of(tracked%column, tracked%family, tracked%order)
+        if (tracked%family(0) > 0) tracked%weights = columns%scales(tracked%column)/columns%scales(tracked%family)
       end associate
     end do
     n = 0

@@ -86,7 +86,7 @@ contains
     if (model%mechanism%has_frictions() .and. (model%request%output%with_forces() .or. .not. model%is_driven())) &
       call columns%append_frictions(model%mechanism, heats=.not. model%is_driven())
     call columns%append_contacts(model%mechanism)
-    call columns%append('closure', 'm', 'largest error of a closed chain')
+    call columns%append_in('closure', 'm', 'largest error of a closed chain')
     if (model%request%output%conditioning) call columns%append('conditioning', '1', 'least singular value of the worst chains')
     if (with_error) call columns%append('error', 'rad,m', 'estimated error of the coordinates and points')
   end subroutine find_columns
@@ -368,6 +368,7 @@ contains
       end if
       if (simulation%with_error) row(next + 1) = simulation%error
     end associate
+    call self%columns%convert(row)
     if (allocated(self%sensitivity)) then
       call self%simulation%show_sensitivity(self%sensitivity, err)
       if (allocated(err)) return

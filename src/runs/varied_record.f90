@@ -137,7 +137,7 @@ contains
     call find_varied_motors(simulation%model, motion, changes, err)
     do i = 1, size(changes, 2)
       at = columns%forces() + 2*i
-      self%values(:, at - 1) = changes(:, i)%value*columns%motor_factors(2*i - 1)
+      self%values(:, at - 1) = changes(:, i)%value
       self%values(:, at) = changes(:, i)%force
     end do
   end subroutine put_motors

@@ -1,5 +1,6 @@
 !> The report of a free motion.
 module mech9_dynamic_report
+  use mech9_result_units, only: length_text
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
   use mech9_counted, only: counted
@@ -55,10 +56,11 @@ contains
     if (simulation%with_error) write (unit, '(a)') &
       'largest error '//to_text(simulation%largest_error, 2)//' (rad, m), estimated by '//to_text(simulation%errors%runs)// &
       ' other runs; tolerances '//to_text(simulation%model%request%solver%relative_tolerance, 2)
-    write (unit, '(a)', advance='no') 'largest closure '//to_text(simulation%worst_closure, 3)//' m'
+    write (unit, '(a)', advance='no') 'largest closure '//trim(length_text(simulation%model%mechanism, simulation%worst_closure, 3))
     if (simulation%motion%system%model%request%output%energies) &
       write (unit, '(a)', advance='no') '; '//words_of_energy_change(simulation%model)//' '// &
-        to_text(simulation%largest_energy_change, 3)//' J'
+        to_text(simulation%largest_energy_change/simulation%model%mechanism%units%size_of('J'), 3)//' '// &
+        trim(simulation%model%mechanism%units%name_of('J'))
     write (unit, '(a)') ''
     if (simulation%conditioning%block > 0) write (unit, '(a)') 'least conditioning '// &
       to_text(simulation%conditioning%least, 3)//' at t = '//to_text(simulation%conditioning%t, 6)//' s'

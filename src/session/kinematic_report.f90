@@ -3,6 +3,7 @@ module mech9_kinematic_report
   use mech9_text, only: to_text
   use mech9_counted, only: counted
   use mech9_model, only: model_type
+  use mech9_result_units, only: length_text
   use mech9_plan, only: plan_type
   use mech9_driven_motion, only: driven_motion_type
   use mech9_block_names, only: words_of_block
@@ -51,7 +52,7 @@ contains
     write (unit, '(a)') counted(outcome%rows, 'position')//': '//duration(outcome%seconds_solving)//' to solve'// &
       each(outcome%seconds_solving, outcome%rows)//', '//duration(outcome%seconds_writing)//' to write'
     write (unit, '(a)') 'Newton iterations for each position: '//to_text(iterations_each(outcome, driven), 3)// &
-      '; largest closure '//to_text(driven%worst_closure, 3)//' m'
+      '; largest closure '//trim(length_text(model%mechanism, driven%worst_closure, 3))
     if (driven%conditioning%block > 0) write (unit, '(a)') 'least conditioning '// &
       to_text(driven%conditioning%least, 3)//' at t = '//to_text(driven%conditioning%t, 6)//' s: '// &
       words_of_block(plan%blocks(driven%conditioning%block)%chains, plan%blocks(driven%conditioning%block)%coordinates)

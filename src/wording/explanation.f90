@@ -197,7 +197,7 @@ contains
         text = text//'dq'//to_text(failure%coordinates(i))//' = '//to_text(failure%values(i, way), 5)
       end do
     end do
-    text = text//merge(' (rad/s, m/s)', ' (deg/s, m/s)', abs(failure%angle_unit - 1.0_wp) <= 0.0_wp)
+    text = text//' ('//failure%name//')'
   end subroutine append_rates
 
   !> Driven motions that cannot go on.

@@ -212,7 +212,7 @@ contains
                    "&drive coordinate=2, kind='harmonic', mean=2, amplitude=3, angular_frequency=90, phase=30 /"// &
                    "&initial coordinate=1, position=60, velocity=-30 / &initial coordinate=2, position=3.5 /", &
                    m, 'a mechanism in degrees')
-    call tester%near(m%mechanism%angle_unit, pi/180.0_wp, round_off, 'the unit of angles is read')
+    call tester%near(m%mechanism%units%angle, pi/180.0_wp, round_off, 'the unit of angles is read')
     call tester%near(m%problem%initial%position(1), pi/3.0_wp, round_off, 'an initial angle in degrees is read')
     call tester%near(m%problem%initial%velocity(1), -pi/6.0_wp, round_off, 'an initial angular velocity in degrees is read')
     call tester%near(m%problem%initial%position(2), 3.5_wp, 0.0_wp, 'an initial length is not taken for an angle')

@@ -1,11 +1,12 @@
 """The same mechanism in metres, millimetres and kilometres, in radians and degrees: the same decisions and, scaled, the
-same numbers.
+same numbers. The same with units that &mechanism names: the same motion, whose numbers are those in SI in the units of the heads.
 
 Data files of tests/reference and of the examples, and members of the families of the stress test, among them some that
 end at dead points, cannot be put together or have wrong inputs.
 
-Compares the program with itself: one mechanism in several units of length and angle.
+Compares the program with itself: one mechanism in several units. Closed forms in these units stand at the end.
 """
+import copy
 import json
 import math
 import os
@@ -16,6 +17,7 @@ import pytest
 
 import data_file
 import families
+import file_units
 from gallery_list import examples
 from loops import Loops
 from mech9_cases import REFERENCE, read_table, run, text_of, tolerance_of
@@ -142,9 +144,37 @@ def largest_like(column, table):
     return max(np.max(np.abs(table[name])) for name in table if vector_of(name) == vector_of(column))
 
 
+def into_radians(groups):
+    """The groups of a file in degrees with angles in rad."""
+    moves = file_units.motions(groups)
+    degrees = file_units.FileUnits(angle='deg')
+    for group, items in groups:
+        kind = items['kind'][0] if group in ('load', 'motor') else group
+        turns = 'coordinate' in items and group != 'pair' and moves.get(items['coordinate'][0]) == 'turn'
+        always = ['at_least'] if group == 'limit' else ['angular_frequency', 'phase'] if group in ('drive', 'load', 'motor') else []
+        of_turns = [name for name, what in file_units.OF_COORDINATE.get(kind, {}).items() if set(what) & set('qr')] if turns else []
+        for name in always + of_turns:
+            if name in items:
+                items[name] = [float(value) * degrees.a for value in items[name]]
+        if 'dh' in items:
+            items['dh'] = [float(v) * (degrees.a if i in (1, 3) else 1.0) for i, v in enumerate(items['dh'])]
+        if group == 'coupling':
+            if 'coefficients' in items:
+                items['coefficients'] = [float(v) / (degrees.a if moves[k] == 'turn' else 1.0)
+                                         for v, k in zip(items['coefficients'], items['coordinates'])]
+            if 'phase' in items and moves[items['coordinates'][1]] == 'turn':
+                items['phase'] = [float(items['phase'][0]) * degrees.a]
+        if group == 'mechanism':
+            items.pop('angle_unit')
+
+
+NAMED = [file_units.FileUnits('mm', 'deg', 'kN', 't', 'rpm'), file_units.FileUnits('in', 'deg', 'lbf', 'lb', 'rpm'),
+         file_units.FileUnits('mm', 'rad', 'N', 'g')]
+
+
 class Units:
     def __init__(self, checks, folder):
-        self.checks, self.folder = checks, folder
+        self.checks, self.folder, self.heads = checks, folder, {}
 
     def look(self, program, text, *options):
         """Exit code, what is said but for the path, table and report of a run, and its plan."""
@@ -160,6 +190,7 @@ class Units:
         if os.path.exists(table):
             with open(table, encoding='utf-8') as file:
                 content = file.read()
+            self.heads = file_units.head_units(content)
             rows = read_table(content) if len([line for line in content.splitlines() if line[:1] != '#']) > 1 else None
         if os.path.exists(report):
             with open(report, encoding='utf-8') as file:
@@ -221,6 +252,29 @@ class Units:
         self.compare(f'{os.path.basename(path)}, in degrees', runs[0], self.look(program, data_file.write(groups), *options),
                      lambda column: degrees_in(column, slides))
 
+    def named(self, program, path, *options):
+        """A data file with units that &mechanism names: each column is that of SI, by the unit of its head."""
+        with open(path, encoding='utf-8') as file:
+            text = re.sub(r"file='", f"file='{os.path.dirname(path)}/", file.read())
+        groups = groups_of_run(text)
+        if dict(groups)['mechanism'].get('angle_unit') == ['deg']:
+            # angles of tables in files stay: only files without any are converted to rad first
+            if any('file' in items for _, items in groups):
+                return
+            groups = [(group, dict(items)) for group, items in groups]
+            into_radians(groups)
+        plain = self.look(program, data_file.write(groups), *options)
+        heads = self.heads
+        if not self.checks.true(plain[2] is not None, f'{path}: it runs', plain[1]):
+            return
+        for units in NAMED:
+            there = file_units.in_units(copy.deepcopy(groups), units, self.folder)
+            other = self.look(program, data_file.write(there), *options)
+            if not self.checks.true(other[2] is not None, f'{path}, {units}: it runs', other[1]):
+                continue
+            sizes = {name: file_units.si_of(self.heads[name]) / file_units.si_of(heads[name]) for name in heads if name != 'error'}
+            self.compare(f'{os.path.basename(path)}, {units}', plain, other, lambda column, sizes=sizes: 1 / sizes[column])
+
     def scale_curves(self, groups, s):
         """Curves with lengths that are s times as large, in files of their own."""
         for group, items in groups:
@@ -262,11 +316,27 @@ def test_data_files_of_the_gallery(units, build, example):
     units.file(build.program(example.program), example.data, *(() if whole else SHORT))
 
 
+@pytest.mark.parametrize('name', NAMES)
+def test_references_with_named_units(units, mech9k, mech9d, name):
+    path = os.path.join(REFERENCE, name)
+    if name.startswith('kinematics_'):
+        units.named(mech9k, path)
+    else:
+        units.named(mech9d, path, *SHORT)
+
+
+@pytest.mark.parametrize('example', EXAMPLES, ids=[example.name for example in EXAMPLES])
+def test_the_gallery_with_named_units(units, build, example):
+    whole = example.program == 'mech9k' or re.search(r"take='at'", text_of(example.data))
+    units.named(build.program(example.program), example.data, *(() if whole else SHORT))
+
+
 def test_a_spring_at_a_pin(units, mech9d):
     spring = os.path.join(units.folder, 'spring.nml')
     with open(spring, 'w', encoding='utf-8') as file:
         file.write(SPRING_AT_PIN)
     units.file(mech9d, spring, *SHORT)
+    units.named(mech9d, spring, *SHORT)
 
 
 FAMILIES = {**families.MOVING, **families.WRONG}

@@ -212,6 +212,7 @@ contains
     err%failure%chains = [1]
     err%failure%coordinates = [4, 2]
     err%failure%values = reshape([1.0_wp, 0.5_wp, -1.0_wp, -0.25_wp], [2, 2])
+    err%failure%name = 'rad/s, m/s'
     call says(test, err, &
               'the mechanism starts in a singular position of closed chain 1 (coordinates 2, 4), where two branches meet: '// &
               'dq4 = 1, dq2 = 0.5 or dq4 = -1, dq2 = -0.25 (rad/s, m/s); start a little beside it, on the one that is meant')

@@ -16,7 +16,7 @@ module mech9_state_space
   private
   public :: state_space_type, find_state_space
 
-  !> The matrices, in the units of the results.
+  !> The matrices, in SI units with the angles of the data file.
   type :: state_space_type
     real(wp), allocatable :: a(:, :)   !< (m,m) [1/s], in the units of the states; m = 2n and the states of motors
     real(wp), allocatable :: b(:, :)   !< (m,inputs) states per N m, N or V
@@ -67,7 +67,7 @@ contains
     space%c = space%c + matmul(by_acceleration, accelerate(:, :m))
     space%d = matmul(by_acceleration, accelerate(:, m + 1:))
     do i = 1, n
-      unit = equilibrium%resting%plan%result_unit(equilibrium%resting%free(i))
+      unit = unit_of_state(mechanism, equilibrium%resting%free(i))
       space%c(:, i) = space%c(:, i)*unit
       space%c(:, n + i) = space%c(:, n + i)*unit
       space%a(:, i) = space%a(:, i)*unit
@@ -119,7 +119,7 @@ contains
     end do
   end subroutine find_accelerations
 
-  !> Derivatives of the outputs by one free coordinate, its rate or its acceleration, in the units of the results per SI unit.
+  !> Derivatives of the outputs by one free coordinate, its rate or its acceleration, in the units of the matrices per SI unit.
   subroutine outputs_of(mechanism, recorded, derivatives, equilibrium, i, order, outputs)
     type(mechanism_type), intent(in) :: mechanism          !< the mechanism
     integer, intent(in) :: recorded(:)                     !< numbers of the recorded coordinates
@@ -142,10 +142,13 @@ contains
         variation%ddq(resting%free(i)) = 1.0_wp
       end select
       call vary_motion(resting%plan, resting%state, resting%linearisation%motion, variation)
-      three(:, 0) = variation%q(recorded)/resting%plan%result_unit(recorded)
-      three(:, 1) = variation%dq(recorded)/resting%plan%result_unit(recorded)
-      three(:, 2) = variation%ddq(recorded)/resting%plan%result_unit(recorded)
+      three(:, 0) = variation%q(recorded)
+      three(:, 1) = variation%dq(recorded)
+      three(:, 2) = variation%ddq(recorded)
     end associate
+    do k = 1, size(recorded)
+      three(k, :) = three(k, :)/unit_of_state(mechanism, recorded(k))
+    end do
     used = (derivatives + 1)*size(recorded)
     outputs(:used) = reshape(three(:, :derivatives), [used])
     do k = 1, size(mechanism%points)
@@ -156,6 +159,15 @@ contains
       end do
     end do
   end subroutine outputs_of
+
+  !> One unit of a coordinate in the matrices: that of angles, or 1 m.
+  pure real(wp) function unit_of_state(mechanism, k) result(unit)
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    integer, intent(in) :: k                        !< number of the coordinate
+
+    unit = 1.0_wp
+    if (mechanism%pairs(k)%pair%angular) unit = mechanism%units%angle
+  end function unit_of_state
 
   !> Derivatives of position, velocity and acceleration of a point of a link.
   pure subroutine vary_point(equilibrium, link, place, changes)

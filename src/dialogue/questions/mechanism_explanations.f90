@@ -20,6 +20,17 @@ module mech9_mechanism_explanations
     explanation_type('mechanism', 'angle_unit', '', &
                   'All angles that you type and all angles in the results are in this unit, and their rates in this unit '// &
                   'per second.', 'deg'), &
+    explanation_type('mechanism', 'length_unit', '', &
+                  'All lengths that you type and all lengths in the results are in this unit. Answers in other units are '// &
+                  'converted: 80 mm, 2.5 in.', 'mm'), &
+    explanation_type('mechanism', 'force_unit', '', &
+                  'All forces are in this unit. Torques and energies are in this unit times the unit of lengths.', 'kN'), &
+    explanation_type('mechanism', 'mass_unit', '', &
+                  'All masses are in this unit. Moments of inertia are in this unit times the square of the unit of '// &
+                  'lengths.', 't'), &
+    explanation_type('mechanism', 'rate_unit', '', &
+                  'Rates of angles are in this unit: velocities at the start, angular frequencies, the second coefficient '// &
+                  'of a drive, and the columns dq of the results.', 'rpm'), &
     explanation_type('mechanism', 'data_tolerance', '', &
                   'Points and directions from a drawing have a few digits only, and a mechanism that moves by its exact '// &
                   'dimensions alone would be locked. Its redundant equations may stay open by this part of its size, and '// &

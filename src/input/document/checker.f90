@@ -12,6 +12,7 @@ module mech9_checker
                             value_integer, add_item
   use mech9_item_merge, only: merge_items, expand_repeats
   use mech9_item_check, only: check_item, known_word
+  use mech9_item_units, only: scale_items
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
@@ -45,6 +46,7 @@ contains
     do i = 1, size(group_table)
       call check_repeated(document, i, diagnostics)
     end do
+    call scale_items(document)
   end subroutine check_document
 
   !> Tell that --set adds a group that has errors, beside those of the file: its number may be a mistake.

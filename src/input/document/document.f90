@@ -41,6 +41,7 @@ module mech9_document
     type(span_type) :: span         !< place of the name
     logical :: overrides = .false.  !< comes from --set and replaces the value of the file
     integer :: row = 0              !< of item_table, where a parameter sets one of its values
+    real(wp) :: scale = 1.0_wp      !< one unit of its numbers in SI, where the grammar alone tells their kind
   end type item_type
 
   !> One group with its items, in the order of the file.
@@ -123,6 +124,7 @@ contains
     to%span = from%span
     to%overrides = from%overrides
     to%row = from%row
+    to%scale = from%scale
   end subroutine move_item
 
   !> Append a value; see add_group.

@@ -18,7 +18,7 @@ module mech9_grammar
                                                'modified-sine modified-trapezoidal'
 
   type(group_row_type), parameter :: group_table(*) = [ &
-    group_row_type('mechanism', .false., '', both, 'title, numbers of links and coordinates, unit of angles'), &
+    group_row_type('mechanism', .false., '', both, 'title, numbers of links and coordinates, units'), &
     group_row_type('structure', .false., '', both, &
                    'which links meet, which coordinates are independent: first set (c, cq) or second (nrg, nws, rdw, nrw)'), &
     group_row_type('pair', .true., 'coordinate', both, &
@@ -70,6 +70,17 @@ module mech9_grammar
                   'number of coordinates: a pair has as many as it has freedoms', '7'), &
     item_row_type('mechanism', 'angle_unit', 'text', 1, 1, '', optional, '''rad''', '', 'rad deg', '', &
                   'unit of all angles in this file and in its results', '''deg'''), &
+    item_row_type('mechanism', 'length_unit', 'text', 1, 1, '', optional, '''m''', '', 'm mm in', '', &
+                  'unit of all lengths in this file and in its results, where these tables have m', '''mm''', seldom=.true.), &
+    item_row_type('mechanism', 'force_unit', 'text', 1, 1, '', optional, '''N''', '', 'N kN lbf', '', &
+                  'unit of all forces, where these tables have N; torques and energies are force times length', '''kN''', &
+                  seldom=.true.), &
+    item_row_type('mechanism', 'mass_unit', 'text', 1, 1, '', optional, '''kg''', '', 'kg g t lb', '', &
+                  'unit of all masses, where these tables have kg; moments of inertia are mass times length^2', '''t''', &
+                  seldom=.true.), &
+    item_row_type('mechanism', 'rate_unit', 'text', 1, 1, '', optional, '(angle_unit/s)', '', 'rad/s deg/s rpm', '', &
+                  'unit of the rates of angles: velocity, angular_frequency, second coefficient of a drive, columns dq', &
+                  '''rpm''', seldom=.true.), &
     item_row_type('mechanism', 'data_tolerance', 'real', 1, 1, '', optional, '0', '>=0', '', '', &
                   'error of the dimensions (over the mechanism''s size) and of the angles (rad): limit of residuals '// &
                   'of redundant equations', '1e-6', seldom=.true.), &

@@ -22,8 +22,8 @@ module mech9_grammar_rows
     character(len=8) :: type  !< integer, real, text or logical
     integer :: low            !< fewest values
     integer :: high           !< most values; more than one makes a list
-    !> Empty for pure numbers. `angle` is rad or degrees, as angle_unit says; `q` is the unit of
-    !> the coordinate: an angle, a length, or that of a user's pair.
+    !> Empty for pure numbers. `angle` is rad or degrees, as angle_unit says, `angle/s` the rate_unit; `q` is the unit of
+    !> the coordinate: an angle, a length, or that of a user's pair. m, N and kg are the units that &mechanism names.
     character(len=13) :: unit
     logical :: needed             !< must be given wherever its kind allows it
     character(len=22) :: default  !< the default as it would be written; in parentheses where it is a rule

@@ -233,6 +233,6 @@ contains
     type(item_row_type), intent(in) :: row  !< the name, as a row of item_table
 
     known_word = text /= '' .and. index(trim(text), ' ') == 0 .and. &
-                 index(' '//row%words//' ', ' '//lower(trim(text))//' ') > 0
+                 index(' '//lower(row%words)//' ', ' '//lower(trim(text))//' ') > 0
   end function known_word
 end module mech9_item_check

@@ -115,7 +115,7 @@ contains
       span = group%items(i)%values(value_number)%span
   end function span_of
 
-  !> The numbers given under a name, or those of its default.
+  !> The numbers given under a name, or those of its default; in SI where the grammar alone tells their kind.
   pure function get_reals(group, name) result(numbers)
     type(group_type), intent(in) :: group  !< the group of the data file
     character(len=*), intent(in) :: name   !< name of the item, in lower case
@@ -124,13 +124,13 @@ contains
 
     i = find_item(group, name)
     if (i > 0) then
-      numbers = group%items(i)%values%number
+      numbers = group%items(i)%scale*group%items(i)%values%number
     else
       numbers = default_numbers(group, name)
     end if
   end function get_reals
 
-  !> The number given under a name that takes one, or its default.
+  !> The number given under a name that takes one, or its default; see get_reals.
   pure real(wp) function get_real(group, name)
     type(group_type), intent(in) :: group  !< the group of the data file
     character(len=*), intent(in) :: name   !< name of the item, in lower case
@@ -139,7 +139,7 @@ contains
 
     i = find_item(group, name)
     if (i > 0) then
-      get_real = group%items(i)%values(1)%number
+      get_real = group%items(i)%scale*group%items(i)%values(1)%number
     else
       numbers = default_numbers(group, name)
       get_real = numbers(1)

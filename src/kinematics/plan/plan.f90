@@ -141,7 +141,8 @@ module mech9_plan
     type(pose_type), allocatable :: link_in_frame(:)  !< each link's own system in its first frame
     real(wp), allocatable :: unit_of(:)             !< unit of each coordinate: 1 rad, or `length`
     real(wp), allocatable :: result_unit(:)         !< (M) one unit of each coordinate in results and messages [rad, m]
-    real(wp) :: angle_unit = 1.0_wp                 !< one unit of angle in them [rad]
+    real(wp), allocatable :: rate_unit(:)           !< (M) one unit of the rate of each coordinate in them [rad/s, m/s]
+    character(len=12) :: rate_names = ''            !< units of rates of angles and of lengths in them, as rad/s, m/s
     integer, allocatable :: independent(:)          !< coordinates, ascending
     logical, allocatable :: driven(:)               !< (M) a drive gives the motion of the coordinate
     integer, allocatable :: free(:)                 !< independent coordinates without a drive, ascending

@@ -6,7 +6,7 @@ module mech9_scaling
   use mech9_pose, only: pose_type, inverse, transformed
   use mech9_pair, only: screw_factors_type, pair_guide_type
   use mech9_mechanism, only: mechanism_type
-  use mech9_result_units, only: unit_of
+  use mech9_result_units, only: unit_of, rate_unit_of
   use mech9_plan, only: plan_type
   implicit none
   private
@@ -93,7 +93,8 @@ contains
       call mechanism%pairs(k)%pair%guide(guide)
       if ((is_screw .or. guide%length > 0.0_wp) .and. .not. mechanism%pairs(k)%pair%angular) plan%unit_of(k) = plan%length
     end do
-    plan%angle_unit = mechanism%angle_unit
+    plan%rate_unit = [(rate_unit_of(mechanism, k), k=1, plan%n_coordinates)]
+    plan%rate_names = trim(mechanism%units%rate_name)//', '//trim(mechanism%units%length_name)//'/s'
     plan%result_unit = [(unit_of(mechanism, k), k=1, plan%n_coordinates)]
   end subroutine find_units
 end module mech9_scaling

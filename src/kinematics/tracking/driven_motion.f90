@@ -135,9 +135,9 @@ contains
 
     err%failure%values = starting%rates(:, :starting%count)
     do i = 1, size(err%failure%coordinates)
-      err%failure%values(i, :) = err%failure%values(i, :)/plan%result_unit(err%failure%coordinates(i))
+      err%failure%values(i, :) = err%failure%values(i, :)/plan%rate_unit(err%failure%coordinates(i))
     end do
-    err%failure%angle_unit = plan%angle_unit
+    err%failure%name = trim(plan%rate_names)
   end subroutine add_rates
 
   !> Find the motion off a singular start.

@@ -7,7 +7,7 @@ module mech9_tracking_failures
 
   !> A start at a dead point: chains and coordinates of the block; the same for the following three.
   integer, parameter :: failure_start_at_dead_point = 501
-  !> A start where two branches meet: values (unknown, branch), the rates by which it can go on, and angle_unit.
+  !> A start where two branches meet: values (unknown, branch), the rates by which it can go on, and name, their units.
   integer, parameter :: failure_start_on_branches = 502
   integer, parameter :: failure_start_unclear = 503
   integer, parameter :: failure_start_locked = 504

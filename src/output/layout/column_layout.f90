@@ -44,7 +44,8 @@ contains
     end do
     do order = 0, columns%derivatives
       if (size(mechanism%points) > 0) &
-        call self%add_of_points(list, mechanism, columns, trim(of_points(order)), trim(point_units(order)), order)
+        call self%add_of_points(list, mechanism, columns, trim(of_points(order)), &
+                                trim(columns%system%name_of(trim(point_units(order)))), order)
     end do
     if (columns%forces() > 0) call self%add_forces(list, columns)
     do i = 1, scalars_of(columns)
@@ -134,10 +135,11 @@ contains
     if (n == 0) return
     call self%add_one(list, columns, new_column_set('reaction_force', [((at + 6*(i - 1) + k, k=1, 3), i=1, n)], [3, n], &
                                                     'forces that the reference links pass to the moving links through the '// &
-                                                    'pairs, in the fixed frame', 'N', ['/pair', '/axis']))
+                                                    'pairs, in the fixed frame', trim(columns%system%force_name), &
+                                                    ['/pair', '/axis']))
     call self%add_one(list, columns, new_column_set('reaction_moment', [((at + 6*(i - 1) + 3 + k, k=1, 3), i=1, n)], [3, n], &
                                                     'moments that they pass, about the origins of the pairs'' frames in the '// &
-                                                    'moving links', 'N m', ['/pair', '/axis']))
+                                                    'moving links', trim(columns%system%name_of('N m')), ['/pair', '/axis']))
     at = at + 6*n
     n = columns%couplings
     call find_common_unit(columns%units(at + 1:at + n), unit)
@@ -156,12 +158,14 @@ contains
     n = columns%poses%n_links
     vertices = size(columns%poses%vertex_link)
     call self%add_one(list, columns, new_column_set('origin', [(columns%count + i, i=1, 3*n)], [3, n], &
-                                                    'origins U of the links in the fixed frame', 'm', ['/link', '/axis']))
+                                                    'origins U of the links in the fixed frame', &
+                                                    trim(columns%system%length_name), ['/link', '/axis']))
     call self%add_one(list, columns, new_column_set('rotation', [(columns%count + 3*n + i, i=1, 9*n)], [3, 3, n], &
                                                     'rotations A of the links: X = A X'' + U', '1', &
                                                     ['/link     ', '/axis     ', '/link_axis']))
     call self%add_one(list, columns, new_column_set('vertex', [(columns%count + 12*n + i, i=1, 3*vertices)], [3, vertices], &
-                                                    'vertices of the drawn links in the fixed frame', 'm', &
+                                                    'vertices of the drawn links in the fixed frame', &
+                                                    trim(columns%system%length_name), &
                                                     ['/vertex_number', '/axis         ']))
   end subroutine add_poses
 

@@ -3,7 +3,9 @@ module mech9_row_layout
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use mech9_kinds, only: wp
   use mech9_text, only: string_type
+  use mech9_units, only: units_type
   use mech9_mechanism, only: mechanism_type
+  use mech9_result_units, only: impulse_unit_of
   use mech9_columns, only: columns_type
   use mech9_plan, only: plan_type
   use mech9_free_simulation, only: free_simulation_type
@@ -103,6 +105,7 @@ contains
     class(data_set_store_type), intent(inout) :: store        !< the open storage
     type(free_simulation_type), intent(in) :: simulation      !< the motion, as far as it went
     type(string_type), allocatable :: kinds(:), groups(:)
+    real(wp), allocatable :: impulses(:)
     integer :: i, n
 
     n = simulation%events%count
@@ -118,8 +121,10 @@ contains
       call store%put('events/kind', kinds, 'impact, close or open')
       call store%put('events/group', groups, 'kind of the group of the data file that the event belongs to')
       call store%put('events/number', events%number, 'number of this group')
-      call store%put('events/impulse', merge(events%impulse, ieee_value(1.0_wp, ieee_quiet_nan), events%has_impulse), &
-                     'impulse on the coordinate, positive while it grows; not a number where there is none', 'N s, N m s')
+      impulses = [(events(i)%impulse/impulse_unit_of(simulation%model%mechanism, trim(events(i)%group), events(i)%number), i=1, n)]
+      call store%put('events/impulse', merge(impulses, ieee_value(1.0_wp, ieee_quiet_nan), events%has_impulse), &
+                     'impulse on the coordinate, positive while it grows; not a number where there is none', &
+                     units_of_impulses(simulation%model%mechanism%units))
     end associate
     call store%attach_scales('events/kind', ['/events/time'])
     call store%attach_scales('events/group', ['/events/time'])
@@ -127,6 +132,14 @@ contains
     call store%attach_scales('events/impulse', ['/events/time'])
     if (allocated(simulation%impacts)) call write_pair_impulses(store, simulation)
   end subroutine write_events
+
+  !> The units of impulses: N s, N m s.
+  pure function units_of_impulses(units) result(text)
+    type(units_type), intent(in) :: units   !< of the results
+    character(len=len_trim(units%name_of('N s')) + 2 + len_trim(units%name_of('N m s'))) :: text
+
+    text = trim(units%name_of('N s'))//', '//units%name_of('N m s')
+  end function units_of_impulses
 
   !> Write the impulses of pairs at the events.
   subroutine write_pair_impulses(store, simulation)
@@ -136,7 +149,7 @@ contains
     real(wp), allocatable :: wrenches(:, :), all(:, :, :)
     integer :: i
 
-    associate (events => simulation%events)
+    associate (events => simulation%events, units => simulation%model%mechanism%units)
       do i = 1, events%count
         call simulation%impacts%show(events%items(i)%t, shown, wrenches)
         if (size(shown) == 0) cycle
@@ -144,14 +157,16 @@ contains
           pairs = shown
           allocate (all(6, size(pairs), events%count), source=ieee_value(1.0_wp, ieee_quiet_nan))
         end if
-        if (events%items(i)%has_impulse) all(:, :, i) = wrenches
+        if (.not. events%items(i)%has_impulse) cycle
+        all(:3, :, i) = wrenches(:3, :)/units%force
+        all(4:, :, i) = wrenches(4:, :)/(units%force*units%length)
       end do
     end associate
     if (.not. allocated(all)) return
     call store%put('events/pair', pairs, 'pairs whose impulses are recorded, by their coordinates')
     call store%make_scale('events/pair')
     call store%put('events/pair_impulse', all, 'impulses of force and moment of the pairs; not a number but at impacts', &
-                   'N s, N m s')
+                   units_of_impulses(simulation%model%mechanism%units))
     call store%attach_scales('events/pair_impulse', ['/events/time', '/events/pair'])
   end subroutine write_pair_impulses
 

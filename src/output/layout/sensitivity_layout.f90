@@ -117,7 +117,7 @@ contains
     parameters = size(columns%parameters)
     n = columns%poses%n_links
     call list%add(new_column_set('sensitivity/origin', [(before + i, i=1, 3*n*parameters)], [parameters, 3, n], &
-                                 'derivatives of origin by the parameters', 'm'//per_unit, &
+                                 'derivatives of origin by the parameters', trim(columns%system%length_name)//per_unit, &
                                  ['/time     ', '/link     ', '/axis     ', '/parameter']))
     before = before + 3*n*parameters
     call list%add(new_column_set('sensitivity/rotation', [(before + i, i=1, 9*n*parameters)], [parameters, 3, 3, n], &

@@ -131,7 +131,8 @@ contains
     left = right - projection%scale*scale_length(projection)
     foot = projection%height - 14.0_wp
     call script%polyline(reshape([left, foot - 5.0_wp, left, foot, right, foot, right, foot - 5.0_wp], [2, 4]), ink, 1.5_wp)
-    call put_text(to_text(scale_length(projection), 3)//' m', [right + 8.0_wp, foot - 2.0_wp], 'left', ink, script)
+    call put_text(to_text(scale_length(projection)/projection%length, 3)//' '//trim(projection%length_name), &
+                  [right + 8.0_wp, foot - 2.0_wp], 'left', ink, script)
   end subroutine put_scale
 
   !> Draw the axes of link 1, except an axis that points to the viewer.

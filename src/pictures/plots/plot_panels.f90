@@ -68,15 +68,15 @@ contains
     select case (unit)
     case ('rad', 'deg')
       quantity = 'angle'
-    case ('rad/s', 'deg/s')
+    case ('rad/s', 'deg/s', 'rpm')
       quantity = 'angular velocity'
     case ('rad/s^2', 'deg/s^2')
       quantity = 'angular acceleration'
-    case ('m')
+    case ('m', 'mm', 'in')
       quantity = 'position'
-    case ('m/s')
+    case ('m/s', 'mm/s', 'in/s')
       quantity = 'velocity'
-    case ('m/s^2')
+    case ('m/s^2', 'mm/s^2', 'in/s^2')
       quantity = 'acceleration'
     case ('J')
       quantity = 'energy'

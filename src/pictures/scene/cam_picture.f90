@@ -2,6 +2,7 @@
 !> profile does not enter. It shows the follower where the motion begins, and the places of extreme values. Parts that
 !> are undercut are red.
 module mech9_cam_picture
+  use mech9_result_units, only: length_text
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: string_type, to_text
@@ -230,13 +231,14 @@ contains
 
     if (profile%has_pressure) &
       call put_dot(profile%pressure, 'pressure angle '// &
-                   to_text(profile%contacts(profile%pressure)%pressure/model%mechanism%angle_unit, 4)// &
-                   merge(' rad', ' deg', abs(model%mechanism%angle_unit - 1.0_wp) <= 0.0_wp), '-8')
+                   to_text(profile%contacts(profile%pressure)%pressure/model%mechanism%units%angle, 4)//' '// &
+                   model%mechanism%units%angle_name, '-8')
     if (profile%convex > 0) &
-      call put_dot(profile%convex, 'radius '//to_text(profile%contacts(profile%convex)%radius, 4)//' m', '16')
+      call put_dot(profile%convex, 'radius '//trim(length_text(model%mechanism, profile%contacts(profile%convex)%radius, 4)), '16')
     if (profile%concave > 0) then
       if (abs(profile%contacts(profile%concave)%radius) <= huge(1.0_wp)) &
-        call put_dot(profile%concave, 'radius '//to_text(profile%contacts(profile%concave)%radius, 4)//' m', '28')
+        call put_dot(profile%concave, 'radius '// &
+                     trim(length_text(model%mechanism, profile%contacts(profile%concave)%radius, 4)), '28')
     end if
   contains
     !> Draw one dot with its words.

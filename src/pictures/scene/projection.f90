@@ -18,6 +18,8 @@ module mech9_projection
     real(wp) :: scale = 1.0_wp         !< scale of the picture [px/m]
     real(wp) :: width = 640.0_wp, height = 480.0_wp
     real(wp) :: middle(2) = 0.0_wp     !< place of the centre on the page [px]
+    real(wp) :: length = 1.0_wp        !< unit of lengths at the bar of the scale [m]
+    character(len=2) :: length_name = 'm'   !< its name
     real(wp) :: symbol = 1.0_wp        !< scale of symbols: 1 at full size, less where there is little room
   contains
     procedure :: on_page
@@ -72,6 +74,8 @@ contains
     end if
     if (turned) extent = max(extent, wide*diagonal)
     projection%view = view
+    projection%length = mechanism%units%length
+    projection%length_name = mechanism%units%length_name
     projection%centre = middle(1)*view%right + middle(2)*view%up + middle(3)*view%toward
     ! a mechanism that is seen as one point still has a scale
     extent = max(extent, 0.001_wp*diagonal)

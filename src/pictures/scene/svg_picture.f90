@@ -212,7 +212,7 @@ contains
     call page%line('<g id="scale"><path stroke="#222" stroke-width="1.5" d="M'//decimal(projection%width - 90.0_wp - &
                    projection%scale*bar)//' '//decimal(foot - 5.0_wp)//'v5h'//decimal(projection%scale*bar)//'v-5"/>'// &
                    '<text class="small" x="'//decimal(projection%width - 82.0_wp)//'" y="'//decimal(foot + 2.0_wp)//'">'// &
-                   to_text(bar, 3)//' m</text></g>')
+                   to_text(bar/projection%length, 3)//' '//trim(projection%length_name)//'</text></g>')
     call put_axes(projection, all_axes, page)
   end subroutine put_surroundings
 
@@ -239,12 +239,12 @@ contains
   pure real(wp) function scale_length(projection)
     type(projection_type), intent(in) :: projection  !< from space to the page
 
-    scale_length = round_length(90.0_wp/projection%scale)
+    scale_length = projection%length*round_length(90.0_wp/projection%scale/projection%length)
   end function scale_length
 
   !> The largest of the numbers 1, 2, 5, 10, 20, ... and 0.5, 0.2, 0.1, ... that is not greater than the length.
   pure real(wp) function round_length(length)
-    real(wp), intent(in) :: length  !< the length, positive [m]
+    real(wp), intent(in) :: length  !< the length, positive, in the unit of the picture
     real(wp) :: power
 
     power = 10.0_wp**floor(log10(length))

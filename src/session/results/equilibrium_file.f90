@@ -80,11 +80,11 @@ contains
     wrenches = reshape(rows(at + size(columns%drives) + 1:at + size(columns%drives) + 6*n, :), [3, 2, n, size(rows, 2)])
     part = wrenches(:, 1, :, :)
     call file%put('reaction_force', part, 'forces that the reference links pass to the moving links through the pairs, in the '// &
-                  'fixed frame', 'N')
+                  'fixed frame', trim(columns%system%name_of('N')))
     call file%attach_scales('reaction_force', scales)
     part = wrenches(:, 2, :, :)
     call file%put('reaction_moment', part, 'moments that they pass, about the origins of the pairs'' frames in the moving links', &
-                  'N m')
+                  trim(columns%system%name_of('N m')))
     call file%attach_scales('reaction_moment', scales)
     at = at + columns%forces() - columns%couplings
     if (columns%couplings > 0) then

@@ -3,10 +3,10 @@ module mech9_linear_file
   use mech9_kinds, only: wp
   use mech9_text, only: string_type
   use mech9_model, only: model_type
-  use mech9_columns, only: columns_type, kinematic_columns
+  use mech9_columns, only: columns_type
   use mech9_hdf5_file, only: hdf5_file_type
   use mech9_linearised_equilibrium, only: equilibrium_type
-  use mech9_linear_names, only: name_linear_system
+  use mech9_linear_names, only: name_linear_system, linear_columns
   use mech9_state_space, only: state_space_type, find_state_space
   implicit none
   private
@@ -22,7 +22,7 @@ contains
     type(columns_type) :: columns
     type(state_space_type) :: space
 
-    columns = kinematic_columns(model%mechanism, model%request%output)
+    columns = linear_columns(model%mechanism, model%request%output)
     associate (free => equilibrium%resting%free)
       call file%put('free', free, 'number of each free coordinate')
       call file%make_scale('free')

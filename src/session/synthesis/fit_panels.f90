@@ -122,8 +122,8 @@ contains
 
     associate (objective => model%request%objectives(number))
       panel%title = name//' and its '//to_text(size(met%times))//' targets'
-      panel%x_label = name//'.'//letters(axes(1))//' [m]'
-      panel%y_label = name//'.'//letters(axes(2))//' [m]'
+      panel%x_label = name//'.'//letters(axes(1))//' ['//trim(model%mechanism%units%length_name)//']'
+      panel%y_label = name//'.'//letters(axes(2))//' ['//trim(model%mechanism%units%length_name)//']'
       panel%equal_scales = .true.
       panel%curve = transpose(way%places(axes, :))
       allocate (panel%targets(size(met%times), 4), panel%reached(size(met%times), 4), source=0.0_wp)
@@ -136,6 +136,11 @@ contains
         end do
         panel%reached(:, 3:) = transpose(met%directions(axes, :))
       end if
+    end associate
+    associate (unit => model%mechanism%units%length)
+      panel%curve = panel%curve/unit
+      panel%targets(:, :2) = panel%targets(:, :2)/unit
+      panel%reached(:, :2) = panel%reached(:, :2)/unit
     end associate
     panels = [panels, panel]
   end subroutine append_plane

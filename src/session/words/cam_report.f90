@@ -22,27 +22,28 @@ contains
     type(cam_profile_type), intent(in) :: profile   !< its profile
     integer :: i
 
-    associate (cam => model%request%cams(number), contacts => profile%contacts)
+    associate (cam => model%request%cams(number), contacts => profile%contacts, length => model%mechanism%units%length)
       call json%begin_object()
       call json%add('cam', number)
       call json%add('link', cam%link)
       call json%add('follower', cam%follower)
-      if (.not. cam%flat) call json%add('roller', cam%roller)
+      if (.not. cam%flat) call json%add('roller', cam%roller/length)
       call json%add('coordinate', cam%coordinate)
       call json%add('coordinate_unit', trim(unit_name(model%mechanism, cam%coordinate)))
-      call json%add('angle_unit', trim(merge('rad', 'deg', abs(model%mechanism%angle_unit - 1.0_wp) <= 0.0_wp)))
+      if (model%mechanism%units%length_name /= 'm') call json%add('length_unit', trim(model%mechanism%units%length_name))
+      call json%add('angle_unit', model%mechanism%units%angle_name)
       call json%add('points', count(profile%at_output .and. contacts%known))
       call json%add('closed', profile%closed)
       call json%add('outputs_at_rest', profile%resting)
       call add_pitch(json, model, cam, profile)
       if (profile%has_pressure) call add_extreme('greatest_pressure_angle', contacts(profile%pressure), &
-                                                 contacts(profile%pressure)%pressure/model%mechanism%angle_unit)
+                                                 contacts(profile%pressure)%pressure/model%mechanism%units%angle)
       if (profile%convex > 0) &
-        call add_extreme('least_convex_radius', contacts(profile%convex), contacts(profile%convex)%radius)
+        call add_extreme('least_convex_radius', contacts(profile%convex), contacts(profile%convex)%radius/length)
       if (profile%concave > 0) &
-        call add_extreme('least_concave_radius', contacts(profile%concave), abs(contacts(profile%concave)%radius))
+        call add_extreme('least_concave_radius', contacts(profile%concave), abs(contacts(profile%concave)%radius)/length)
       if (cam%flat) call json%add('contact_on_face', [minval(contacts%offset, contacts%known), &
-                                                      maxval(contacts%offset, contacts%known)])
+                                                      maxval(contacts%offset, contacts%known)]/length)
       call json%begin_array('undercut')
       do i = 1, size(profile%undercut, 2)
         call json%begin_object()
@@ -104,8 +105,8 @@ contains
       end do
     end associate
     call json%begin_object('pitch_curve')
-    call json%add('least_distance', minval(distances))
-    call json%add('largest_distance', maxval(distances))
+    call json%add('least_distance', minval(distances)/model%mechanism%units%length)
+    call json%add('largest_distance', maxval(distances)/model%mechanism%units%length)
     call json%end_object()
   end subroutine add_pitch
 end module mech9_cam_report

@@ -5,7 +5,7 @@ module mech9_cam_text
   use mech9_text, only: to_text
   use mech9_counted, only: counted
   use mech9_model, only: model_type
-  use mech9_result_units, only: unit_of, unit_name
+  use mech9_result_units, only: unit_of, unit_name, length_text
   use mech9_cam_contact, only: cam_contact_type
   use mech9_cam_profile, only: cam_profile_type
   use mech9_law_notes, only: print_jumps
@@ -29,7 +29,8 @@ contains
       if (cam%flat) then
         name = name//', and a flat face on link '
       else if (cam%roller > 0.0_wp) then
-        name = name//', and a roller of radius '//to_text(cam%roller)//' m on link '
+        name = name//', and a roller of radius '//to_text(cam%roller/model%mechanism%units%length)//' '// &
+               trim(model%mechanism%units%length_name)//' on link '
       else
         name = name//', and an edge on link '
       end if
@@ -94,8 +95,8 @@ contains
     if (profile%concave > 0) call print_radius('concave', profile%contacts(profile%concave))
     if (model%request%cams(number)%flat) &
       write (unit, '(a)') '  contact on the face: from '// &
-        to_text(minval(profile%contacts%offset, profile%contacts%known), digits)//' to '// &
-        to_text(maxval(profile%contacts%offset, profile%contacts%known), digits)//' m from its point'
+        to_text(minval(profile%contacts%offset, profile%contacts%known)/model%mechanism%units%length, digits)//' to '// &
+        trim(length_text(model%mechanism, maxval(profile%contacts%offset, profile%contacts%known), digits))//' from its point'
     call print_undercut(unit, model, number, profile)
     call print_jumps(unit, model)
   contains
@@ -105,8 +106,8 @@ contains
       type(cam_contact_type), intent(in) :: contact     !< the contact with this radius
 
       if (abs(contact%radius) <= huge(1.0_wp)) then
-        write (unit, '(a)') '  least radius of curvature, '//kind//': '//to_text(abs(contact%radius), digits)//' m'// &
-          place_of(contact)
+        write (unit, '(a)') '  least radius of curvature, '//kind//': '// &
+          trim(length_text(model%mechanism, abs(contact%radius), digits))//place_of(contact)
       else
         write (unit, '(a)') '  no '//trim(merge('convex', 'curved', profile%concave > 0))//' part: the profile is straight'// &
           trim(merge(' or concave', '           ', profile%concave > 0))
@@ -118,8 +119,7 @@ contains
       real(wp), intent(in) :: angle   !< [rad]
       character(len=:), allocatable :: text
 
-      text = to_text(angle/model%mechanism%angle_unit, digits)// &
-             merge(' rad', ' deg', abs(model%mechanism%angle_unit - 1.0_wp) <= 0.0_wp)
+      text = to_text(angle/model%mechanism%units%angle, digits)//' '//model%mechanism%units%angle_name
     end function angle_of
 
     !> The position of a contact: " at q1 = 1.5 rad (t = 0.2 s)".

@@ -5,6 +5,7 @@ module mech9_contact_text
   use mech9_motion_view, only: link_motion_type
   use mech9_contact, only: contact_place_type
   use mech9_mechanism, only: mechanism_type
+  use mech9_result_units, only: length_text
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_contact_motion, only: place_of_contact
@@ -32,11 +33,11 @@ contains
         call place_of_contact(contact, plan, start, place, ball, surface)
         words = 'contact '//to_text(i)//': '
         if (contact%radius > 0.0_wp) then
-          words = words//'a ball of the radius '//to_text(contact%radius, 6)//' m'
+          words = words//'a ball of the radius '//trim(length_text(mechanism, contact%radius, 6))
         else
           words = words//'a point'
         end if
-        words = words//' of link '//to_text(contact%links(1))//' is '//to_text(abs(place%gap), 6)//' m '// &
+        words = words//' of link '//to_text(contact%links(1))//' is '//trim(length_text(mechanism, abs(place%gap), 6))//' '// &
                 trim(merge('within', 'from  ', place%gap < 0.0_wp))//' a '//trim(merge('plane ', 'sphere', contact%is_plane))// &
                 ' of link '//to_text(contact%links(2))
         if (contact%is_rigid) then

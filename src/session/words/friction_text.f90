@@ -1,9 +1,10 @@
 !> Frictions in a check and in reports.
 module mech9_friction_text
+  use mech9_kinds, only: wp
   use mech9_text, only: to_text
   use mech9_counted, only: counted
   use mech9_mechanism, only: mechanism_type
-  use mech9_result_units, only: force_unit_name
+  use mech9_result_units, only: force_unit_name, si_force, length_text
   use mech9_driven_frictions, only: rest_range_type
   implicit none
   private
@@ -24,14 +25,16 @@ contains
       associate (friction => mechanism%frictions(i))
         words = 'friction '//to_text(i)//': coordinate '//to_text(friction%coordinate)//' '
         if (friction%is_helical()) then
-          words = words//'on a thread of the mean radius '//to_text(friction%radius, 4)//' m; from the coefficient '// &
+          words = words//'on a thread of the mean radius '//trim(length_text(mechanism, friction%radius, 4))// &
+                  '; from the coefficient '// &
                   to_text(abs(friction%lead)/friction%radius, 6)//' on it holds a force along its axis by itself'
         else if (friction%turns) then
-          words = words//'turns in a bearing of the radius '//to_text(friction%radius, 4)//' m'
-          if (friction%face_radius > 0.0) words = words//', on a face of the mean radius '//to_text(friction%face_radius, 4)//' m'
+          words = words//'turns in a bearing of the radius '//trim(length_text(mechanism, friction%radius, 4))
+          if (friction%face_radius > 0.0) &
+            words = words//', on a face of the mean radius '//trim(length_text(mechanism, friction%face_radius, 4))
         else
           words = words//'slides'
-          if (friction%arm > 0.0) words = words//' in a guide of the half length '//to_text(friction%arm, 4)//' m'
+          if (friction%arm > 0.0) words = words//' in a guide of the half length '//trim(length_text(mechanism, friction%arm, 4))
         end if
         words = words//'; coefficients '//to_text(friction%static, 4)//' at rest, '//to_text(friction%dynamic, 4)//' in motion'
         if (friction%is_smooth) words = words//', smooth'
@@ -46,11 +49,16 @@ contains
     type(mechanism_type), intent(in) :: mechanism      !< the mechanism
     type(rest_range_type), intent(in) :: rest          !< outputs at rest
     character(len=:), allocatable :: words
+    real(wp) :: of_force
 
     if (rest%outputs == 0) return
+    of_force = 1.0_wp
+    if (rest%coordinate > 0) &
+      of_force = mechanism%units%size_of(trim(si_force(mechanism%pairs(rest%coordinate)%pair)))
     words = 'pairs are at rest at '//counted(rest%outputs, 'output')//', where their friction counts as 0'
     if (rest%coordinate > 0) words = words//'; at t = '//to_text(rest%t, 8)//' s the force of drive '//to_text(rest%coordinate)// &
-                                     ' lies between '//to_text(rest%force(1), 6)//' and '//to_text(rest%force(2), 6)//' '// &
+                                     ' lies between '//to_text(rest%force(1)/of_force, 6)//' and '// &
+                                     to_text(rest%force(2)/of_force, 6)//' '// &
                                      trim(force_unit_name(mechanism, rest%coordinate))
     write (unit, '(a)') words
   end subroutine print_rest

@@ -5,6 +5,7 @@ module mech9_geometry_text
   use mech9_counted, only: counted
   use mech9_pair, only: pair_guide_type
   use mech9_mechanism, only: mechanism_type
+  use mech9_result_units, only: length_text
   use mech9_link_dimensions, only: link_dimension_type, link_dimensions
   implicit none
   private
@@ -25,6 +26,7 @@ contains
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(link_dimension_type), allocatable :: dimensions(:)
     character(len=3) :: angle_name
+    character(len=:), allocatable :: length_name
     real(wp) :: largest, shown(3)
     logical :: given(3)
     integer :: i
@@ -32,15 +34,17 @@ contains
     call print_curves(unit, mechanism)
     call link_dimensions(mechanism, dimensions)
     if (size(dimensions) == 0) return
-    angle_name = merge('rad', 'deg', abs(mechanism%angle_unit - 1.0_wp) <= 0.0_wp)
+    angle_name = mechanism%units%angle_name
+    length_name = '['//trim(mechanism%units%length_name)//']'
     largest = max(maxval(dimensions%distance), maxval(dimensions%between_points))
     write (unit, '(a)') 'dimensions of the links: distance and angle between the axes of two pairs, distance of their points'
-    write (unit, '(2x,a6,2x,a12,3a16)') 'link', 'pairs       ', 'axes [m]', 'angle ['//angle_name//']', 'points [m]'
+    write (unit, '(2x,a6,2x,a12,3a16)') 'link', 'pairs       ', 'axes '//length_name, 'angle ['//angle_name//']', &
+      'points '//length_name
     do i = 1, min(size(dimensions), most_lines)
-      associate (d => dimensions(i))
+      associate (d => dimensions(i), length => mechanism%units%length)
         given = [d%has_distance, d%has_angle, d%has_points]
-        shown = [d%distance, d%angle/mechanism%angle_unit, d%between_points]
-        where (abs(shown) <= round_off*[largest, 1.0_wp/mechanism%angle_unit, largest]) shown = 0.0_wp
+        shown = [d%distance/length, d%angle/mechanism%units%angle, d%between_points/length]
+        where (abs(shown) <= round_off*[largest/length, 1.0_wp/mechanism%units%angle, largest/length]) shown = 0.0_wp
         write (unit, '(2x,i6,2x,a12,3a16)') d%link, left(to_text(d%pairs(1))//' and '//to_text(d%pairs(2))), &
           right(shown(1), given(1)), right(shown(2), given(2)), right(shown(3), given(3))
       end associate
@@ -59,7 +63,7 @@ contains
       call mechanism%pairs(k)%pair%guide(guide)
       if (.not. guide%length > 0.0_wp) cycle
       write (unit, '(a)') 'curve of pair '//to_text(k)//': '//trim(merge('closed', 'open  ', guide%closed))// &
-        ', length '//to_text(guide%length, 10)//' m'
+        ', length '//trim(length_text(mechanism, guide%length, 10))
     end do
   end subroutine print_curves
 

@@ -4,7 +4,7 @@ module mech9_standing_text
   use mech9_simulation_tolerances, only: doubtful_conditioning
   use mech9_text, only: to_text
   use mech9_model, only: model_type
-  use mech9_result_units, only: unit_of, unit_name
+  use mech9_result_units, only: rate_unit_of, rate_unit_name
   use mech9_simulation, only: standing_type
   implicit none
   private
@@ -22,8 +22,8 @@ contains
     if (standing%step > 0.0_wp) text = text//', in steps of '//to_text(standing%step, 2)//' s'
     if (standing%fastest > 0) then
       associate (k => standing%fastest, mechanism => model%mechanism)
-        text = text//'; q'//to_text(k)//' moves fastest, at '//to_text(standing%rate/unit_of(mechanism, k), 3)//' '// &
-               trim(unit_name(mechanism, k))//'/s'
+        text = text//'; q'//to_text(k)//' moves fastest, at '//to_text(standing%rate/rate_unit_of(mechanism, k), 3)//' '// &
+               trim(rate_unit_name(mechanism, k))
       end associate
     end if
     if (standing%conditioning < doubtful_conditioning) &

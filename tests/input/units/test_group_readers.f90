@@ -22,6 +22,7 @@ module test_group_readers
   use mech9_request, only: output_settings_type
   use mech9_source, only: source_from_text
   use mech9_study, only: study_type
+  use mech9_units, only: units_of_words
   use mech9_study_reader, only: read_study
   use mech9_checks, only: near_vector, near_matrix
   use mech9_small_models, only: slider_crank, eol
@@ -96,7 +97,8 @@ contains
     type(initial_type) :: initial
 
     call checked(tester, '&initial coordinate=1, position=30, velocity=60 /'//eol, document, model, diagnostics)
-    call read_initial(document, model%problem%partition, model%mechanism%pairs, degree, initial, diagnostics)
+    call read_initial(document, model%problem%partition, model%mechanism%pairs, units_of_words('m', 'deg', 'N', 'kg', ''), &
+                      initial, diagnostics)
     call tester%is_true(.not. diagnostics%failed(), 'initial values')
     ! two roundings of numbers of order one
     call near_vector(tester, initial%position, [30.0_wp*degree, 0.0_wp, 0.0_wp, 1.2_wp], 4.0e-16_wp, 'positions')

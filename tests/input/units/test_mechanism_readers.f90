@@ -12,7 +12,7 @@ module test_mechanism_readers
   use mech9_diagnostics, only: diagnostics_type
   use mech9_document, only: document_type
   use mech9_drive_check, only: check_drives
-  use mech9_drive_reader, only: read_drives, files_of_groups, unit_of_coordinate
+  use mech9_drive_reader, only: read_drives, files_of_groups, units_of_coordinate
   use mech9_error, only: error_type
   use mech9_joint_reader, only: read_joints
   use mech9_law, only: drive_slot_type
@@ -23,6 +23,7 @@ module test_mechanism_readers
   use mech9_motor_reader, only: read_motors
   use mech9_objective_reader, only: read_objectives
   use mech9_pair, only: pair_motion_type
+  use mech9_units, only: units_type, coordinate_units_type
   use mech9_mechanism, only: mechanism_type
   use mech9_pair_reader, only: read_pairs
   use mech9_parser, only: parse_document
@@ -44,6 +45,7 @@ module test_mechanism_readers
   public :: run
 
   real(wp), parameter :: pi = acos(-1.0_wp), degree = pi/180.0_wp
+  type(units_type), parameter :: degrees = units_type(angle=degree, rate=degree, angle_name='deg', rate_name='deg/s')
   real(wp), parameter :: tol = 1.0e-14_wp   ! a few roundings of numbers of order one
   character(len=*), parameter :: path = 'test_mechanism_readers.dat'
 
@@ -66,15 +68,20 @@ contains
   end subroutine run
 
   !> The checked groups of a slider-crank and others, and its model.
-  subroutine checked(tester, groups, document, model, diagnostics)
+  subroutine checked(tester, groups, document, model, diagnostics, begin)
     type(tester_type), intent(inout) :: tester            !< counts the checks
     character(len=*), intent(in) :: groups                !< behind those of the slider-crank
     type(document_type), intent(out) :: document          !< all groups
     type(model_type), intent(out) :: model                !< the slider-crank
     type(diagnostics_type), intent(out) :: diagnostics    !< gets the errors
+    character(len=*), intent(in), optional :: begin       !< of the text, with other units; absent: '&mechanism '
 
     call model_from_text(tester, slider_crank, dynamics, model)
-    call checked_from_text(tester, slider_crank//groups, document, diagnostics)
+    if (present(begin)) then
+      call checked_from_text(tester, begin//slider_crank(len('&mechanism '):)//groups, document, diagnostics)
+    else
+      call checked_from_text(tester, slider_crank//groups, document, diagnostics)
+    end if
   end subroutine checked
 
   !> A screw advances by its pitch in a turn; a slide moves along its axis; points and axes are those of the reference link.
@@ -94,7 +101,7 @@ contains
       "&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1, point=1,0,0, moving_point=0,2,0 /"//eol), document, diagnostics)
     call check_document(document, diagnostics)
     call read_structure(document, mechanism%structure, partition, known, diagnostics)
-    mechanism%angle_unit = degree
+    mechanism%units = degrees
     mechanism%parameters = [real(wp) ::]
     call read_pairs(document, mechanism, diagnostics)
     call tester%is_true(.not. diagnostics%failed() .and. known .and. size(mechanism%pairs) == 3, 'three pairs')
@@ -143,6 +150,7 @@ contains
     type(model_type) :: model
     type(diagnostics_type) :: diagnostics
     type(string_type), allocatable :: files(:)
+    type(coordinate_units_type) :: unit
 
     call is_law("kind='polynomial', coefficients=30, 60, 90", 2.0_wp, [30.0_wp + 120.0_wp + 360.0_wp, 60.0_wp + 360.0_wp, 180.0_wp])
     ! mean + amplitude sin(frequency t + phase), the frequency and phase in degrees as well
@@ -156,8 +164,9 @@ contains
     call remove_file(path)
     call tester%is_true(size(files) == 1, 'one file is named')
     if (size(files) == 1) call tester%is_true(files(1)%text == path, 'its path')
-    call tester%near(unit_of_coordinate(document%groups(size(document%groups)), model%mechanism%pairs, degree), degree, 0.0_wp, &
-                     'the unit of an angle')
+    unit = units_of_coordinate(document%groups(size(document%groups)), model%mechanism%pairs, degrees)
+    call near_vector(tester, [unit%position, unit%rate, unit%force, unit%slope], [degree, degree, 1.0_wp, 1.0_wp], 0.0_wp, &
+                     'the units of an angle')
   contains
     !> The numbers of a law of coordinate 1, in degrees.
     subroutine is_law(items, t, expected)
@@ -171,8 +180,9 @@ contains
       type(error_type), allocatable :: err
       real(wp) :: found(3)
 
-      call checked(tester, '&drive coordinate=1, '//items//' /'//eol, document, model, diagnostics)
-      model%mechanism%angle_unit = degree
+      call checked(tester, '&drive coordinate=1, '//items//' /'//eol, document, model, diagnostics, &
+                   '&mechanism angle_unit=''deg'', ')
+      model%mechanism%units = degrees
       call read_drives(document, model%mechanism, 0.0_wp, model%problem%partition, list, diagnostics)
       call tester%is_true(.not. diagnostics%failed() .and. size(list) == 1, 'a drive: '//items)
       if (size(list) /= 1) return
@@ -199,7 +209,7 @@ contains
       type(drive_slot_type), allocatable :: list(:)
 
       call checked(tester, groups, document, model, diagnostics)
-      model%mechanism%angle_unit = degree
+      model%mechanism%units = degrees
       call read_drives(document, model%mechanism, 0.0_wp, model%problem%partition, list, diagnostics)
       call move_alloc(list, model%problem%drives)
       model%program = kinematics
@@ -232,7 +242,7 @@ contains
       real(wp) :: at, beside
 
       call checked(tester, '&coupling '//items//' /'//eol, document, model, diagnostics)
-      model%mechanism%angle_unit = degree
+      model%mechanism%units = degrees
       call read_couplings(document, [0.0_wp, 0.0_wp, 0.0_wp, 1.2_wp], model%mechanism, diagnostics)
       call tester%is_true(.not. diagnostics%failed() .and. size(model%mechanism%couplings) == 1, 'a coupling: '//items)
       if (size(model%mechanism%couplings) /= 1) return
@@ -260,7 +270,7 @@ contains
                  "&load kind='spring', links=1,4, position=1,2,3, second_position=4,5,6, stiffness=7, free_length=0.5 /"//eol// &
                  "&load kind='coordinate', coordinate=4, force=1, law='polynomial', coefficients=1,2 /"//eol, document, model, &
                  diagnostics)
-    model%mechanism%angle_unit = degree
+    model%mechanism%units = degrees
     call read_loads(document, model%mechanism, diagnostics)
     call tester%is_true(.not. diagnostics%failed() .and. size(model%mechanism%loads) == 3, 'three loads')
     if (size(model%mechanism%loads) /= 3) return
@@ -295,7 +305,7 @@ contains
     call checked(tester, "&motor coordinate=1, kind='dc', voltage=24, resistance=0.5, constant=0.05, gear_ratio=20 /"//eol// &
                  "&motor coordinate=4, kind='pid', proportional=50, derivative=5, limit=8, setpoint=1.25 /"//eol// &
                  "&motor coordinate=1, kind='pid', proportional=50, setpoint=90 /"//eol, document, model, diagnostics)
-    call read_motors(document, model%mechanism%pairs, degree, list, diagnostics)
+    call read_motors(document, model%mechanism%pairs, degrees, list, diagnostics)
     call tester%is_true(.not. diagnostics%failed() .and. size(list) == 3, 'three motors')
     if (size(list) /= 3) return
     select type (motor => list(1)%motor)
@@ -317,7 +327,7 @@ contains
     call list(3)%motor%law%evaluate(1.0_wp, q, dq, ddq, err)
     call tester%near(q, pi/2.0_wp, tol, 'a setpoint in degrees')
     call checked(tester, "&motor coordinate=1, kind='dc', resistance=0.5, constant=0.05 /"//eol, document, model, diagnostics)
-    call read_motors(document, model%mechanism%pairs, degree, list, diagnostics)
+    call read_motors(document, model%mechanism%pairs, degrees, list, diagnostics)
     call tester%is_true(diagnostics%failed(), 'a motor without voltage')
   end subroutine motors
 
