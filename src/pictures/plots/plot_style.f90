@@ -7,7 +7,7 @@ module mech9_plot_style
   use mech9_title_lines, only: title_lines
   implicit none
   private
-  public :: plot_style, picture_terminal, picture_title, axis_format, axis_step, digits_needed, first_colour, second_colour
+  public :: plot_style, picture_terminal, picture_title, axis_format, digits_needed, first_colour, second_colour
 
   character, parameter :: line_end = achar(10)
   !> Colours that people with any kind of colour vision can distinguish (Okabe and Ito), the dark ones first; they
@@ -81,35 +81,6 @@ contains
 
     text = quoted('%.'//to_text(digits_needed(ends))//'g')
   end function axis_format
-
-  !> The distance of the numbers below a horizontal axis, for a script. It is 1, 2 or 5 times a power of ten, with which
-  !> the numbers stand apart. It is empty where all values are equal.
-  pure function axis_step(ends, width) result(text)
-    real(wp), intent(in) :: ends(2)  !< least and greatest value on the axis
-    integer, intent(in) :: width     !< length of the axis [px]
-    character(len=:), allocatable :: text
-    integer, parameter :: letter = 9, gap = 14, most_letters = 12, finest = 10   ! of the fonts of pictures [px]; marks
-    real(wp), parameter :: factors(3) = [1.0_wp, 2.0_wp, 5.0_wp]
-    real(wp) :: span, step
-    integer :: power, i, letters
-
-    text = ''
-    span = ends(2) - ends(1)
-    if (.not. span > epsilon(span)*maxval(abs(ends))) return
-    step = span
-    do power = floor(log10(span)) - 1, floor(log10(span)) + 1
-      do i = 1, size(factors)
-        step = factors(i)*10.0_wp**power
-        letters = max(1, floor(log10(maxval(abs(ends)))) + 1)
-        if (power < 0) letters = letters + 1 - power
-        if (any(ends < 0.0_wp)) letters = letters + 1
-        if (span > finest*step .or. (span/step + 1.0_wp)*(min(letters, most_letters)*letter + gap) > width) cycle
-        text = to_text(step, 3)
-        return
-      end do
-    end do
-    text = to_text(step, 3)
-  end function axis_step
 
   !> The number of digits by which neighbouring marks of an axis differ, at least six.
   pure integer function digits_needed(ends)

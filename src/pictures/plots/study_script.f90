@@ -4,7 +4,8 @@ module mech9_study_script
   use mech9_text, only: string_type, to_text
   use mech9_printable, only: printable
   use mech9_gnuplot, only: quoted, quoted_lines, quoted_path
-  use mech9_plot_style, only: plot_style, picture_terminal, picture_title, axis_format, axis_step, first_colour, second_colour
+  use mech9_plot_style, only: plot_style, picture_terminal, picture_title, axis_format, first_colour, second_colour
+  use mech9_plot_axes, only: axis_step
   use mech9_plot_panels, only: axis_label
   use mech9_plot_blocks, only: block_of, find_layout
   use mech9_study_request, only: panel_type
@@ -159,7 +160,8 @@ contains
     character(len=:), allocatable :: text, block, step
 
     block = block_name(i)
-    step = axis_step(ends_of(rows(panel%columns(1), :)), width - merge(beside_map, 0, panel%n > 2))
+    step = axis_step(ends_of(rows(panel%columns(1), :)), width - merge(beside_map, 0, panel%n > 2), &
+                     units(panel%columns(1))%text)
     if (step == '') step = 'autofreq'
     text = axis_commands(panel, names, units, rows)//'set xtics '//step//line_end
     select case (panel%n)

@@ -9,7 +9,8 @@ module test_plot_texts
   use mech9_motion_event, only: motion_events_type
   use mech9_plot_script, only: picture_script
   use mech9_plot_drawing, only: script_of_plot
-  use mech9_plot_style, only: axis_step, digits_needed, picture_terminal, picture_title
+  use mech9_plot_axes, only: axis_step, axis_commands
+  use mech9_plot_style, only: digits_needed, picture_terminal, picture_title
   use mech9_structure_graph, only: text_of_graph
   use mech9_error, only: error_type
   use mech9_testing, only: tester_type
@@ -92,6 +93,13 @@ contains
     ! six marks of three letters, each 9 px wide, with gaps of 14 px need 246 px, and three of them half as much
     call tester%is_true(axis_step([0.0_wp, 1.0_wp], 250) == '0.2' .and. axis_step([0.0_wp, 1.0_wp], 240) == '0.5', 'parts of one')
     call tester%is_true(axis_step([3.0_wp, 3.0_wp], 600) == '', 'equal ends have no marks')
+    call tester%is_true(axis_step([0.0_wp, 360.0_wp], 600, 'deg') == '45' .and. axis_step([0.0_wp, 360.0_wp], 300, 'deg') == '90' &
+                        .and. axis_step([0.0_wp, 50.0_wp], 300, 'deg') == '10', 'parts of a turn')
+    call tester%is_true(axis_commands('y', [0.0_wp, 350.0_wp], 'deg', 195, .false.) == &
+                        'set yrange [0:360]'//new_line('a')//'set ytics 90'//new_line('a'), 'the axis ends at a mark')
+    call tester%is_true(index(axis_commands('x', [-1.0_wp, 6.0_wp], 'rad', 500, .false.), '/2'' 4.71238898') > 0, 'parts of pi')
+    call tester%is_true(index(axis_commands('y', [1.0e300_wp, 2.0e300_wp], 'm', 195, .false.), 'set autoscale y') == 1, &
+                        'huge values are left to gnuplot')
   end subroutine axes
 
   !> The columns of the curves, and one row of so many.
