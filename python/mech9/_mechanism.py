@@ -471,7 +471,7 @@ class Mechanism:
         return drawn(lambda path: call(lib.sketch, self._handle, path, text_of(view or '')), 'svg')
 
     def animate(self, *, kind: str = 'html', view: str | None = None, dynamics: bool | None = None, **words: Any) -> Picture:
-        """A run as a moving picture of a kind: 'html', 'svg' or 'gif'. It takes the words of a run."""
+        """A run as a moving picture of a kind: 'html', 'svg', 'gif' or 'mp4'. It takes the words of a run."""
         run = self._with_words(words)
         with_forces = not run.is_driven if dynamics is None else dynamics
 

@@ -14,7 +14,7 @@ class Picture:
 
     def __init__(self, content: bytes, kind: str):
         self.content = content
-        self.kind = kind   # svg, html or gif
+        self.kind = kind   # svg, html, gif or mp4
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the picture to a file."""
@@ -32,6 +32,8 @@ class Picture:
             return re.sub(r' id="[^"]*"', '', self.text[self.text.index('<svg'):])
         if self.kind == 'gif':
             return f'<img src="data:image/gif;base64,{base64.b64encode(self.content).decode()}">'
+        if self.kind == 'mp4':
+            return f'<video controls loop src="data:video/mp4;base64,{base64.b64encode(self.content).decode()}"></video>'
         return (f'<iframe srcdoc="{html.escape(self.text, quote=True)}" style="width:100%;height:560px;border:0" '
                 'sandbox="allow-scripts"></iframe>')
 

@@ -119,7 +119,7 @@ class Results(Mapping[str, np.ndarray]):
         return self._run_mechanism().sketch(view)
 
     def animate(self, kind: str = 'html', view: str | None = None) -> Picture:
-        """The run as a moving picture of a kind: 'html', 'svg' or 'gif'. The run is made again."""
+        """The run as a moving picture of a kind: 'html', 'svg', 'gif' or 'mp4'. The run is made again."""
         return self._run_mechanism().animate(kind=kind, view=view, dynamics=self._with_forces)
 
     def _run_mechanism(self, refusal: str = 'only the results of kinematics and dynamics have pictures') -> Mechanism:

@@ -464,7 +464,7 @@ contains
     code = end_analysis(error, err, drawn, dynamics)
   end function sketch
 
-  !> Make a run over the outputs of &time, and draw it in a file that ends with .html, .svg or .gif.
+  !> Make a run over the outputs of &time, and draw it in a file that ends with .html, .svg, .gif or .mp4.
   integer(c_int) function animate(mechanism, with_forces, path, view, stop, error) bind(c, name='mech9_animate') result(code)
     type(c_ptr), value, intent(in) :: mechanism        !< the mechanism
     integer(c_int), value, intent(in) :: with_forces   !< 0: a driven motion; else a motion under forces

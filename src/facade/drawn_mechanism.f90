@@ -9,7 +9,7 @@ module mech9_drawn_mechanism
   use mech9_simulation, only: interruption_type
   use mech9_explained_assembly, only: assemble_model
   use mech9_view, only: read_view
-  use mech9_mechanism_pictures, only: mechanism_pictures_type, kind_of_picture
+  use mech9_mechanism_pictures, only: mechanism_pictures_type, kind_of_picture, is_moving_kind, moving_endings
   use mech9_checked_mechanism, only: checked_mechanism_type
   use mech9_recorded_run, only: recorded_run_type
   implicit none
@@ -31,7 +31,6 @@ contains
     type(state_type) :: start
 
     pictures%sketch = path
-    pictures%animation = ''
     if (kind_of_picture(path) /= 'svg') call raise(err, exit_usage, 'the name of a sketch must end in .svg')
     if (.not. allocated(err)) call choose_view(view, pictures, err)
     if (.not. allocated(err)) call mechanism%take_standing(model, err)
@@ -45,7 +44,7 @@ contains
   subroutine draw_film(mechanism, program, path, view, err, interruption)
     type(checked_mechanism_type), intent(in) :: mechanism            !< the mechanism
     integer, intent(in) :: program                                   !< kinematics or dynamics
-    character(len=*), intent(in) :: path                             !< of the picture; it ends with .html, .svg or .gif
+    character(len=*), intent(in) :: path                             !< of the picture; it ends with .html, .svg, .gif or .mp4
     character(len=*), intent(in) :: view                             !< as for the option --view; empty: the best one
     type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
     class(interruption_type), intent(in), optional :: interruption   !< is asked whether the run shall stop
@@ -57,10 +56,10 @@ contains
     integer :: count
 
     pictures%sketch = ''
-    pictures%animation = path
+    allocate (pictures%animations(1))
+    pictures%animations(1)%text = path
     pictures%with_masses = program == dynamics
-    if (all(kind_of_picture(path) /= [character(len=4) :: 'html', 'svg', 'gif'])) &
-      call raise(err, exit_usage, 'the name of a moving picture must end in .html, .svg or .gif')
+    if (.not. is_moving_kind(path)) call raise(err, exit_usage, 'the name of a moving picture must end in '//moving_endings)
     if (.not. allocated(err)) call choose_view(view, pictures, err)
     if (.not. allocated(err)) call run%begin_film(mechanism, program, err, interruption)
     if (allocated(err)) return

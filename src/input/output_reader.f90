@@ -44,6 +44,8 @@ contains
       call diagnostics%add(span_of(group, 'reaction_pairs'), 'reactions=.false. contradicts reaction_pairs; leave one of them out')
     output%drive_forces = get_logical(group, 'drive_forces')
     output%force_arrows = get_logical(group, 'force_arrows')
+    output%velocity_arrows = get_logical(group, 'velocity_arrows')
+    output%acceleration_arrows = get_logical(group, 'acceleration_arrows')
     output%sensitivities = get_logical(group, 'sensitivities')
     output%gradients = get_logical(group, 'gradients')
     if (output%gradients) output%sensitivities_place = diagnostics%place(span_of(group, 'gradients', 1))

@@ -38,6 +38,8 @@ module mech9_film
     real(wp), allocatable :: paths(:, :, :)      !< (3,points,path points) places of the points [m]
     integer, allocatable :: force_pairs(:)       !< pairs whose forces are drawn, by their coordinates
     real(wp), allocatable :: forces(:, :, :)     !< (3,pairs,frames) these forces; not allocated where none are drawn [N]
+    real(wp), allocatable :: velocities(:, :, :)      !< (3,points,frames) of the points; not allocated where none are drawn [m/s]
+    real(wp), allocatable :: accelerations(:, :, :)   !< (3,points,frames) the same [m/s^2]
     logical, allocatable :: hit(:, :, :)         !< (2,stops,frames) the end of the stop was hit since the frame before
     integer, allocatable :: friction_coordinates(:)   !< numbers of the coordinates with friction
     real(wp), allocatable :: rates(:, :)         !< (frictions,frames) rates of these coordinates [rad/s, m/s]
@@ -50,6 +52,7 @@ module mech9_film
     real(wp), allocatable, private :: latest(:, :, :)   !< (3,points,3) position, velocity, acceleration at the latest output
     real(wp), private :: latest_time = 0.0_wp
   contains
+    procedure :: keep_point_motion
     procedure :: note_contacts
     procedure :: take
     procedure :: position
@@ -94,6 +97,16 @@ contains
     allocate (film%paths(3, size(mechanism%points), points), film%latest(3, size(mechanism%points), 3), source=0.0_wp)
   end function new_film
 
+  !> Let a new film keep velocities and accelerations of the points.
+  pure subroutine keep_point_motion(self, velocities, accelerations)
+    class(film_type), intent(inout) :: self    !< a film without frames so far
+    logical, intent(in) :: velocities          !< whether it keeps velocities
+    logical, intent(in) :: accelerations       !< whether it keeps accelerations
+
+    if (velocities) allocate (self%velocities(3, size(self%paths, 2), size(self%times)), source=0.0_wp)
+    if (accelerations) allocate (self%accelerations(3, size(self%paths, 2), size(self%times)), source=0.0_wp)
+  end subroutine keep_point_motion
+
   !> Note the impacts on stops before the next output, of which no position shows anything, and keep the rates of pairs with friction.
   !> Without this a film has neither.
   pure subroutine note_contacts(self, mechanism, events, t)
@@ -137,6 +150,7 @@ contains
       else
         call take_frame(self, plan, state, row)
       end if
+      call take_point_motion(self, mechanism, plan, state)
     end if
     self%n_outputs = self%n_outputs + 1
   end subroutine take
@@ -215,6 +229,25 @@ contains
       call link_motion(plan, state, i, self%r(:, :, i, self%n_frames), self%p(:, i, self%n_frames), omega, v)
     end do
   end subroutine take_frame
+
+  !> The velocities and accelerations of the points are kept for the latest frame, where they are drawn.
+  pure subroutine take_point_motion(self, mechanism, plan, state)
+    class(film_type), intent(inout) :: self        !< poses and values at the outputs of the run
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    type(plan_type), intent(in) :: plan            !< the plan of the mechanism
+    type(state_type), intent(in) :: state          !< position and motion of the mechanism
+    real(wp) :: at(3), velocity(3), acceleration(3)
+    integer :: i
+
+    if (.not. (allocated(self%velocities) .or. allocated(self%accelerations))) return
+    do i = 1, size(mechanism%points)
+      associate (point => mechanism%points(i))
+        call point_motion(plan, state, point%link, point%position, at, velocity, acceleration)
+      end associate
+      if (allocated(self%velocities)) self%velocities(:, i, self%n_frames) = velocity
+      if (allocated(self%accelerations)) self%accelerations(:, i, self%n_frames) = acceleration
+    end do
+  end subroutine take_point_motion
 
   !> The place of a point of a link in a frame of the film, in the system of link 1 [m].
   pure function position(self, frame, link, point)

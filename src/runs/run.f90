@@ -63,6 +63,7 @@ contains
       else
         source%film = new_film(model%mechanism, independent, outputs, source%columns)
       end if
+      call source%film%keep_point_motion(model%request%output%velocity_arrows, model%request%output%acceleration_arrows)
     end associate
   end subroutine record_film
 

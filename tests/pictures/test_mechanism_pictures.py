@@ -462,11 +462,13 @@ REFUSED = (
     (['--animate', 'a.html', '--range'], 2, '--range makes none'),
     (['--sketch', 'a.png'], 2, 'must end in .svg'),
     (['--set', "output.sketch='a'"], 3, 'must end in .svg'),
-    (['--animate', 'a.mp4'], 2, '.html, .svg or .gif'),
-    (['--set', "output.animation='a'"], 3, '.html, .svg or .gif'),
+    (['--animate', 'a.avi'], 2, '.html, .svg, .gif or .mp4'),
+    (['--animate', 'a.html', '--animate', 'a.webm'], 2, "'a.webm' is no name of a moving picture"),
+    (['--set', "output.animation='a'"], 3, '.html, .svg, .gif or .mp4'),
     (['--sketch', 'nowhere/a.svg'], 8, 'nowhere/a.svg'),
     (['--animate', 'nowhere/a.html'], 8, 'nowhere/a.html'),
-    (['--animate', 'nowhere/a.svg'], 8, 'nowhere/a.svg'))
+    (['--animate', 'nowhere/a.svg'], 8, 'nowhere/a.svg'),
+    (['--animate', 'a.svg', '--animate', 'a.svg'], 2, "--animate and --animate cannot both be 'a.svg'"))
 
 
 @pytest.mark.parametrize('options, code, words', REFUSED, ids=[' '.join(options) for options, _, _ in REFUSED])

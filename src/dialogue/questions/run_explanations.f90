@@ -165,7 +165,7 @@ module mech9_run_explanations
                   'The mechanism in its first position is drawn to this file, which any browser shows.', 'crank.svg'), &
     explanation_type('output', 'animation', '', &
                   'The moving mechanism is shown by this file. One that ends with .html is a page with buttons for a '// &
-                  'browser; .svg and .gif are pictures that repeat the motion.', 'crank.html'), &
+                  'browser; .svg and .gif are pictures that repeat the motion, and .mp4 is a video.', 'crank.html'), &
     explanation_type('output', 'view', '', &
                   'This is the direction from which the drawings are seen: two letters are the axes to the right and up, '// &
                   'iso is a view at an angle, and three numbers point to the viewer.', 'xz'), &
@@ -196,6 +196,12 @@ module mech9_run_explanations
                   'The results then hold the force, or the torque, that each drive needs: what a motor must give.', 'yes'), &
     explanation_type('output', 'force_arrows', '', &
                   'Drawing and film then show the forces in the pairs as arrows; the longest arrow is the largest force.', 'yes'), &
+    explanation_type('output', 'velocity_arrows', '', &
+                  'Drawing and film then show the velocity of each point as an arrow; the longest arrow is the largest '// &
+                  'velocity.', 'yes'), &
+    explanation_type('output', 'acceleration_arrows', '', &
+                  'Drawing and film then show the acceleration of each point as an arrow; the longest arrow is the largest '// &
+                  'acceleration.', 'yes'), &
     explanation_type('output', 'sensitivities', '', &
                   'The results then hold how each recorded number changes with each &parameter, as derivatives.', 'yes'), &
     explanation_type('output', 'gradients', '', &

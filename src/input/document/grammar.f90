@@ -410,7 +410,7 @@ module mech9_grammar
     item_row_type('output', 'sketch', 'text', 1, 1, '', optional, '''''', '', '', '', &
                   'SVG file for a drawing of the mechanism at the start', '''fig1.svg''', seldom=.true.), &
     item_row_type('output', 'animation', 'text', 1, 1, '', optional, '''''', '', '', '', &
-                  'file for the moving mechanism: .html is a page that plays it, .svg and .gif are pictures that repeat it', &
+                  'file for the moving mechanism: .html is a page that plays it, .svg and .gif repeat it, .mp4 is a video', &
                   '''fig1.html''', seldom=.true.), &
     item_row_type('output', 'view', 'text', 1, 1, '', optional, '''''', '', '', '', &
                   'axes of both pictures to the right and up, as in xz; iso; or the direction to the viewer, as in 1,-2,1', &
@@ -448,6 +448,12 @@ module mech9_grammar
                   'derivatives of the quantities by each parameter, without columns of their own', '.true.', seldom=.true.), &
     item_row_type('output', 'force_arrows', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
                   'arrows of the forces in the pairs in both pictures, the longest for the largest force', '.true.', &
+                  seldom=.true.), &
+    item_row_type('output', 'velocity_arrows', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
+                  'arrows of the velocities of the points in both pictures, the longest for the largest velocity', '.true.', &
+                  seldom=.true.), &
+    item_row_type('output', 'acceleration_arrows', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
+                  'arrows of the accelerations of the points in both pictures, the longest for the largest one', '.true.', &
                   seldom=.true.), &
     item_row_type('user', 'parameters', 'real', 1, unlimited, '', optional, '(none)', '', '', '', &
                   'numbers that every user procedure receives', '0.1, 2.0')]

@@ -18,7 +18,7 @@ module mech9_grammar_rows
   !> One name of a group. Several rows may share a name where its meaning depends on the kind.
   type :: item_row_type
     character(len=10) :: group
-    character(len=19) :: name
+    character(len=20) :: name
     character(len=8) :: type  !< integer, real, text or logical
     integer :: low            !< fewest values
     integer :: high           !< most values; more than one makes a list

@@ -50,6 +50,8 @@ module mech9_request
     type(place_type) :: sensitivities_place      !< place of either request in the data file
     type(place_type) :: sketch_place, animation_place, view_place   !< of the names of pictures and of the view in the data file
     logical :: force_arrows = .false.            !< pictures show the forces in pairs as arrows
+    logical :: velocity_arrows = .false.         !< pictures show the velocities of the points as arrows
+    logical :: acceleration_arrows = .false.     !< pictures show their accelerations as arrows
   contains
     procedure :: recorded
     procedure :: reacting

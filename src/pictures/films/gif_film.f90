@@ -1,4 +1,4 @@
-!> A film as an animated GIF, which gnuplot draws.
+!> A film as an animated GIF, which gnuplot draws, and frames of a video.
 !>
 !> gnuplot is given polygons and circles only. Lines are polygons that run forth and back; bands and plates are drawn as
 !> their outlines.
@@ -11,7 +11,8 @@ module mech9_gif_film
   use mech9_projection, only: projection_type
   use mech9_scene, only: scene_type, item_type, closed_path, facing_path, mark, label, in_pin, in_cross, in_cam, in_stop, &
                          in_pushed, as_stand, as_ring, as_ball, as_dot, as_centre, as_free, as_name, as_number, &
-                         as_input, as_leader, as_coil, as_cup, as_stuck, in_pairs
+                         as_input, as_leader, as_coil, as_cup, as_stuck, as_sphere, in_surface, &
+                         in_pairs
   use mech9_drawing, only: drawing_type, draw_frame, drawing_order, outline_of
   use mech9_picture_style, only: style_type, styles, dark_colours, light_colours, signal, light_signal, colour_of, ink, &
                                   edge, coil_corners, cup_corners
@@ -23,7 +24,7 @@ module mech9_gif_film
   use mech9_xml_text, only: decimal
   implicit none
   private
-  public :: save_gif_film
+  public :: save_gif_film, script_type, begin_script, put_frame
 
   !> The largest number of frames; a GIF of more frames would be too large for its use.
   integer, parameter :: most_frames = 120
@@ -32,7 +33,8 @@ module mech9_gif_film
   real(wp), parameter :: zoom = 1.5_wp
   !> The font: any one without serifs that can be scaled, and its size [pt].
   character(len=*), parameter :: font = 'sans,12'
-  character(len=*), parameter :: grey = '#d0d0d0', white = '#ffffff', hatch = '#555555', thin = '#777777', none = ''
+  character(len=*), parameter :: grey = '#d0d0d0', pale = '#ececec', white = '#ffffff', hatch = '#555555', thin = '#777777', &
+                                 none = ''
   !> The number of steps in a quarter of a circle.
   integer, parameter :: quarter = 4
 
@@ -58,20 +60,13 @@ contains
     type(projection_type), intent(in) :: projection    !< from space to the page
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
     type(script_type) :: script
-    character(len=:), allocatable :: size
     logical :: found
     integer :: stride, frames, i, delay, decimals
 
     stride = (film%n_frames + most_frames - 1)/most_frames
     frames = (film%n_frames + stride - 1)/stride
     delay = max(2, nint(100.0_wp*duration_of(film)/frames))
-    script%symbol = projection%symbol
-    size = to_text(nint(zoom*projection%width))//','//to_text(nint(zoom*projection%height))
-    call script%page%line('set terminal gif animate delay '//to_text(delay)//' loop 0 size '//size//' noenhanced font "'// &
-                          font//'" linewidth '//decimal(zoom))
-    call script%page%line('set output '//quoted_path(path))
-    call script%page%line('unset border; unset tics; unset key; set lmargin 0; set rmargin 0; set tmargin 0; set bmargin 0')
-    call script%page%line('set xrange [0:'//decimal(projection%width)//']; set yrange ['//decimal(projection%height)//':0]')
+    call begin_script('gif animate delay '//to_text(delay)//' loop 0', zoom, path, projection, script)
     decimals = clock_decimals(film)
     do i = 1, frames
       call put_frame(title, scene, film, projection, 1 + (i - 1)*stride, decimals, script)
@@ -83,6 +78,22 @@ contains
                  ', or let the name end in .html or .svg')
     call add_place(err, 'no moving picture '//path)
   end subroutine save_gif_film
+
+  !> Begin the script of frames: a page without axes, on which places are px of other pictures.
+  subroutine begin_script(terminal, zoom, path, projection, script)
+    character(len=*), intent(in) :: terminal         !< terminal of gnuplot, with settings of its own
+    real(wp), intent(in) :: zoom                     !< dots for each px of other pictures
+    character(len=*), intent(in) :: path             !< file that gnuplot writes
+    type(projection_type), intent(in) :: projection  !< from space to the page
+    type(script_type), intent(out) :: script         !< the script
+
+    script%symbol = projection%symbol
+    call script%page%line('set terminal '//terminal//' size '//to_text(nint(zoom*projection%width))//','// &
+                          to_text(nint(zoom*projection%height))//' noenhanced font "'//font//'" linewidth '//decimal(zoom))
+    call script%page%line('set output '//quoted_path(path))
+    call script%page%line('unset border; unset tics; unset key; set lmargin 0; set rmargin 0; set tmargin 0; set bmargin 0')
+    call script%page%line('set xrange [0:'//decimal(projection%width)//']; set yrange ['//decimal(projection%height)//':0]')
+  end subroutine begin_script
 
   !> Append one frame of the film to the script.
   subroutine put_frame(title, scene, film, projection, frame, decimals, script)
@@ -243,6 +254,8 @@ contains
     associate (style => styles(item%style))
       if (item%shape == facing_path) then
         call script%polygon(corners, white, dark, style%width)
+      else if (item%style == in_surface) then
+        call script%polygon(corners, pale, dark, style%width)
       else if (item%style == in_cam) then
         call script%polygon(corners, light, dark, edge)
       else if (item%style == in_stop .or. item%style == in_pushed) then
@@ -348,6 +361,8 @@ contains
       call script%circle(at, 1.5_wp*s, ink, ink, 1.0_wp)
     case (as_stuck)
       call script%circle(at, 3.4_wp*s, signal, ink, 0.5_wp)
+    case (as_sphere)
+      call script%circle(at, s*item%shift(1), light_colours(colour_of(item%link)), thin, 1.2_wp)
     case (as_leader)
       call script%polyline(reshape([at, at + s*item%shift], [2, 2]), thin, 0.8_wp)
     case (as_coil)

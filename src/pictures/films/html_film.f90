@@ -81,7 +81,7 @@ contains
       numbers(scene%node_link(i)) = count
     end do
     call page%put('const film = {unit: '//to_text(unit, 17)//', scale: '//to_text(projection%scale, 17))
-    call page%put(', symbol: '//decimal(projection%symbol)//', middle: ['//decimal(projection%middle(1))//', '// &
+    call page%put(', symbol: '//to_text(projection%symbol, 6)//', middle: ['//decimal(projection%middle(1))//', '// &
                   decimal(projection%middle(2))//'], sorted: ['//to_text(scene%first_sorted)//', '// &
                   to_text(scene%last_sorted)//'],'//new_line('a')//'view: [')
     do i = 1, 3

@@ -2,11 +2,12 @@
 module mech9_mechanism_pictures
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
+  use mech9_text, only: string_type
   use mech9_path, only: ending_of
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_force_arrows, only: find_tips, take_arrows, add_force_arrows
+  use mech9_force_arrows, only: arrow_type, find_arrows, tips_of, take_arrows, add_arrows
   use mech9_film, only: film_type, new_film
   use mech9_view, only: view_type
   use mech9_skeleton, only: skeleton_type, make_skeleton
@@ -21,14 +22,18 @@ module mech9_mechanism_pictures
   use mech9_html_film, only: save_html_film
   use mech9_svg_film, only: save_svg_film
   use mech9_gif_film, only: save_gif_film
+  use mech9_mp4_film, only: save_mp4_film
   implicit none
   private
-  public :: mechanism_pictures_type, kind_of_picture
+  public :: mechanism_pictures_type, kind_of_picture, is_moving_kind, moving_endings
+
+  !> The endings of moving pictures, in words for messages.
+  character(len=*), parameter :: moving_endings = '.html, .svg, .gif or .mp4'
 
   !> The pictures to make. An empty path means no picture.
   type :: mechanism_pictures_type
     character(len=:), allocatable :: sketch
-    character(len=:), allocatable :: animation
+    type(string_type), allocatable :: animations(:)   !< moving pictures; not allocated: none
     type(view_type), allocatable :: view      !< unless the best one is to be found
     logical :: with_masses = .false.          !< bodies count in this program
   contains
@@ -43,7 +48,8 @@ contains
   pure logical function any_wanted(self)
     class(mechanism_pictures_type), intent(in) :: self   !< the pictures
 
-    any_wanted = self%sketch /= '' .or. self%animation /= ''
+    any_wanted = self%sketch /= ''
+    if (allocated(self%animations)) any_wanted = any_wanted .or. size(self%animations) > 0
   end function any_wanted
 
   !> Make the sketch of an assembled position, without a run. Errors are exit_file.
@@ -59,7 +65,6 @@ contains
     film = new_film(model%mechanism, model%problem%partition%independent(), 1)
     call film%take(model%mechanism, plan, start, [start%t])
     sketch_only%sketch = self%sketch
-    sketch_only%animation = ''
     if (allocated(self%view)) allocate (sketch_only%view, source=self%view)
     sketch_only%with_masses = self%with_masses
     call sketch_only%save(model, film, err)
@@ -74,6 +79,7 @@ contains
     type(skeleton_type) :: skeleton
     type(view_type) :: view
     logical :: planar
+    integer :: i
 
     if (film%n_frames == 0) return
     call make_skeleton(model%mechanism, film, skeleton)
@@ -87,8 +93,10 @@ contains
       view = self%view
     end if
     if (self%sketch /= '') call save_one(self, model, film, skeleton, view, planar, self%sketch, .false., err)
-    if (self%animation /= '' .and. .not. allocated(err)) &
-      call save_one(self, model, film, skeleton, view, planar, self%animation, .true., err)
+    if (.not. allocated(self%animations)) return
+    do i = 1, size(self%animations)
+      if (.not. allocated(err)) call save_one(self, model, film, skeleton, view, planar, self%animations(i)%text, .true., err)
+    end do
   end subroutine save_pictures
 
   !> Make one picture. The mechanism on a page can be turned unless it is planar; its projection leaves room for that.
@@ -105,17 +113,17 @@ contains
     type(projection_type) :: projection
     type(scene_type) :: scene
     type(film_type) :: shown
-    real(wp), allocatable :: tips(:, :, :)
+    type(arrow_type), allocatable :: arrows(:)
     logical :: page
 
     page = moving .and. kind_of_picture(path) == 'html'
-    call find_tips(model%mechanism, film, skeleton%size, tips)
-    call fit_projection(model%mechanism, film, skeleton, view, page .and. .not. planar, tips, projection)
+    call find_arrows(model%mechanism, film, skeleton%size, arrows)
+    call fit_projection(model%mechanism, film, skeleton, view, page .and. .not. planar, tips_of(arrows, film), projection)
     call make_scene(model%mechanism, film, skeleton, projection, planar, self%with_masses, scene)
     shown = film
-    if (allocated(film%forces)) then
-      call take_arrows(model%mechanism, film, tips, projection, shown)
-      call add_force_arrows(model%mechanism, shown, scene)
+    if (size(arrows) > 0) then
+      call take_arrows(arrows, film, projection, shown)
+      call add_arrows(arrows, shown, scene)
     end if
     if (.not. moving) then
       call save_sketch(path, model%mechanism%title, scene, shown, projection, 1, err)
@@ -123,10 +131,19 @@ contains
       call save_html_film(path, model%mechanism%title, scene, shown, projection, planar, err)
     else if (kind_of_picture(path) == 'gif') then
       call save_gif_film(path, model%mechanism%title, scene, shown, projection, err)
+    else if (kind_of_picture(path) == 'mp4') then
+      call save_mp4_film(path, model%mechanism%title, scene, shown, projection, err)
     else
       call save_svg_film(path, model%mechanism%title, scene, shown, projection, err)
     end if
   end subroutine save_one
+
+  !> Whether a moving picture can have this name.
+  pure logical function is_moving_kind(path)
+    character(len=*), intent(in) :: path   !< name of the file
+
+    is_moving_kind = any(kind_of_picture(path) == [character(len=4) :: 'html', 'svg', 'gif', 'mp4'])
+  end function is_moving_kind
 
   !> The kind of picture by the name of its file: the ending in lower case; htm counts as html.
   pure function kind_of_picture(path) result(kind)

@@ -134,7 +134,7 @@ contains
       call put_values(item, drawings, symbol, page)
       call page%put('"/>')
       if (item%shape == mark) then
-        call page%put('<g transform="scale('//decimal(symbol)//')">'//tooltip_of(item)//mark_svg(item%style, item%shift)//'</g>')
+        call page%put('<g transform="scale('//to_text(symbol, 6)//')">'//tooltip_of(item)//mark_svg(item%style, item%shift)//'</g>')
       else
         call page%put(label_svg(item))
       end if

@@ -1,19 +1,30 @@
-!> Arrows of the forces in pairs, in films and sketches. An arrow begins where the force acts on the moving link; the longest one
-!> of a film is a part of the mechanism's size.
+!> Arrows in films and sketches: of the forces in pairs, and of velocities and accelerations of points. A force begins where it acts on the
+!> moving link; the longest arrow of each kind in a film is a part of the mechanism's size.
 !>
 !> The tip and the two barbs of an arrow are drawn as points of additional links, which the film gets. These links move
 !> from frame to frame as the force does.
 module mech9_force_arrows
   use mech9_kinds, only: wp
+  use mech9_text, only: to_text
   use mech9_rotation, only: identity, cross, unit
   use mech9_mechanism, only: mechanism_type
+  use mech9_point, only: point_type
   use mech9_pair_axes, only: pair_axes_type, pair_axes
   use mech9_film, only: film_type
   use mech9_projection, only: projection_type
-  use mech9_scene, only: scene_type, segments, in_force
+  use mech9_scene, only: scene_type, segments, in_force, in_velocity, in_acceleration
   implicit none
   private
-  public :: find_tips, take_arrows, add_force_arrows
+  public :: arrow_type, find_arrows, tips_of, take_arrows, add_arrows
+
+  !> One arrow.
+  type :: arrow_type
+    integer :: style = in_force               !< style of its kind
+    character(len=:), allocatable :: text     !< meaning, such as velocity of P
+    integer :: link = 1                       !< link where it begins
+    real(wp) :: foot(3) = 0.0_wp              !< place in the link where it begins [m]
+    real(wp), allocatable :: ways(:, :)       !< (3,frames) from its foot to its tip, in the axes of link 1; N, m/s or m/s^2 at first, then m
+  end type arrow_type
 
   !> Length of the longest arrow, as a part of the mechanism's size.
   real(wp), parameter :: longest = 0.22_wp
@@ -22,62 +33,127 @@ module mech9_force_arrows
 
 contains
 
-  !> Compute the tips of all arrows; none where a film has no forces.
-  subroutine find_tips(mechanism, film, size_drawn, tips)
-    type(mechanism_type), intent(in) :: mechanism          !< the mechanism
-    type(film_type), intent(in) :: film                    !< poses, values and forces at the outputs of the run
-    real(wp), intent(in) :: size_drawn                     !< the mechanism's size [m]
-    real(wp), allocatable, intent(out) :: tips(:, :, :)    !< (3,pairs,frames) in the system of link 1 [m]
+  !> List all arrows with their lengths on the mechanism's scale; none where a film keeps nothing to be shown by arrows.
+  subroutine find_arrows(mechanism, film, size_drawn, arrows)
+    type(mechanism_type), intent(in) :: mechanism                !< the mechanism
+    type(film_type), intent(in) :: film                          !< poses, values and forces at the outputs of the run
+    real(wp), intent(in) :: size_drawn                           !< the mechanism's size [m]
+    type(arrow_type), allocatable, intent(out) :: arrows(:)      !< in the order in which they are drawn
+    integer, parameter :: kinds(*) = [in_force, in_velocity, in_acceleration]
     type(pair_axes_type), allocatable :: axes(:)
-    real(wp) :: scale
+    integer :: i, k
+
+    allocate (arrows(0))
+    if (allocated(film%accelerations)) then
+      do i = 1, size(mechanism%points)
+        call append_motion(mechanism%points(i), 'acceleration', in_acceleration, film%accelerations(:, i, :film%n_frames), arrows)
+      end do
+    end if
+    if (allocated(film%velocities)) then
+      do i = 1, size(mechanism%points)
+        call append_motion(mechanism%points(i), 'velocity', in_velocity, film%velocities(:, i, :film%n_frames), arrows)
+      end do
+    end if
+    if (allocated(film%forces)) then
+      axes = pair_axes(mechanism%pairs)
+      do i = 1, size(film%force_pairs)
+        k = film%force_pairs(i)
+        call append_arrow(in_force, 'force in pair '//to_text(k), axes(k)%links(2), axes(k)%points(:, 2), &
+                          film%forces(:, i, :film%n_frames), arrows)
+      end do
+    end if
+    do i = 1, size(kinds)
+      call scale_kind(kinds(i), size_drawn, arrows)
+    end do
+  end subroutine find_arrows
+
+  !> Append the arrow of the motion of a point, unless it belongs to link 1.
+  subroutine append_motion(point, kind, style, ways, arrows)
+    type(point_type), intent(in) :: point                        !< the point
+    character(len=*), intent(in) :: kind                         !< velocity or acceleration
+    integer, intent(in) :: style                                 !< style of its kind
+    real(wp), intent(in) :: ways(:, :)                           !< (3,frames) the vectors
+    type(arrow_type), allocatable, intent(inout) :: arrows(:)    !< gets the arrow
+
+    if (point%link > 1) call append_arrow(style, kind//' of '//point%name, point%link, point%position, ways, arrows)
+  end subroutine append_motion
+
+  !> Append an arrow.
+  subroutine append_arrow(style, text, link, foot, ways, arrows)
+    integer, intent(in) :: style                                 !< style of its kind
+    character(len=*), intent(in) :: text                         !< meaning, such as velocity of P
+    integer, intent(in) :: link                                  !< link where it begins
+    real(wp), intent(in) :: foot(3)                              !< place in the link where it begins [m]
+    real(wp), intent(in) :: ways(:, :)                           !< (3,frames) the vectors
+    type(arrow_type), allocatable, intent(inout) :: arrows(:)    !< gets the arrow
+    type(arrow_type), allocatable :: longer(:)
+    integer :: n
+
+    n = size(arrows)
+    allocate (longer(n + 1))
+    longer(:n) = arrows
+    longer(n + 1)%style = style
+    longer(n + 1)%text = text
+    longer(n + 1)%link = link
+    longer(n + 1)%foot = foot
+    longer(n + 1)%ways = ways
+    call move_alloc(longer, arrows)
+  end subroutine append_arrow
+
+  !> Scale the arrows of one kind so that the longest one is a part of the mechanism's size.
+  subroutine scale_kind(style, size_drawn, arrows)
+    integer, intent(in) :: style                     !< of the kind
+    real(wp), intent(in) :: size_drawn               !< the mechanism's size [m]
+    type(arrow_type), intent(inout) :: arrows(:)     !< all arrows
+    real(wp) :: greatest
     integer :: i, frame
 
-    if (.not. allocated(film%forces)) then
-      allocate (tips(3, 0, 0))
-      return
-    end if
-    allocate (tips(3, size(film%force_pairs), film%n_frames))
-    axes = pair_axes(mechanism%pairs)
-    scale = 0.0_wp
-    if (maxval(abs(film%forces)) > 0.0_wp) scale = longest*size_drawn/sqrt(maxval(sum(film%forces**2, 1)))
-    do frame = 1, film%n_frames
-      do i = 1, size(film%force_pairs)
-        tips(:, i, frame) = foot_of(film, axes(film%force_pairs(i)), frame) + scale*film%forces(:, i, frame)
+    greatest = 0.0_wp
+    do i = 1, size(arrows)
+      if (arrows(i)%style /= style) cycle
+      do frame = 1, size(arrows(i)%ways, 2)
+        greatest = max(greatest, norm2(arrows(i)%ways(:, frame)))
       end do
     end do
-  end subroutine find_tips
+    do i = 1, size(arrows)
+      if (arrows(i)%style == style .and. greatest > 0.0_wp) &
+        arrows(i)%ways = (longest*size_drawn)*(arrows(i)%ways/greatest)
+    end do
+  end subroutine scale_kind
 
-  !> The place in a frame where the force of a pair acts on its moving link, in the system of link 1 [m].
-  pure function foot_of(film, axes, frame) result(foot)
-    type(film_type), intent(in) :: film        !< poses at the outputs of the run
-    type(pair_axes_type), intent(in) :: axes   !< axis and points of the pair
-    integer, intent(in) :: frame               !< number of the frame
-    real(wp) :: foot(3)
+  !> The tips of all arrows, in the system of link 1 [m].
+  function tips_of(arrows, film) result(tips)
+    type(arrow_type), intent(in) :: arrows(:)        !< all arrows
+    type(film_type), intent(in) :: film              !< poses at the outputs of the run
+    real(wp), allocatable :: tips(:, :, :)           !< (3,arrows,frames)
+    integer :: i, frame
 
-    foot = film%position(frame, axes%links(2), axes%points(:, 2))
-  end function foot_of
+    allocate (tips(3, size(arrows), film%n_frames))
+    do frame = 1, film%n_frames
+      do i = 1, size(arrows)
+        tips(:, i, frame) = film%position(frame, arrows(i)%link, arrows(i)%foot) + arrows(i)%ways(:, frame)
+      end do
+    end do
+  end function tips_of
 
   !> Form the film with three more links for each arrow: its tip and its barbs.
-  subroutine take_arrows(mechanism, film, tips, projection, with_arrows)
-    type(mechanism_type), intent(in) :: mechanism     !< the mechanism
-    type(film_type), intent(in) :: film               !< poses, values and forces at the outputs of the run
-    real(wp), intent(in) :: tips(:, :, :)             !< (3,pairs,frames) tips of the arrows [m]
+  subroutine take_arrows(arrows, film, projection, with_arrows)
+    type(arrow_type), intent(in) :: arrows(:)         !< all arrows
+    type(film_type), intent(in) :: film               !< poses at the outputs of the run
     type(projection_type), intent(in) :: projection   !< from space to the page
     type(film_type), intent(out) :: with_arrows       !< the film with more links
-    type(pair_axes_type), allocatable :: axes(:)
     real(wp), allocatable :: r(:, :, :, :), p(:, :, :)
     integer :: i, n, frame
 
     n = size(film%p, 2)
     with_arrows = film
-    allocate (r(3, 3, n + 3*size(film%force_pairs), size(film%p, 3)), p(3, n + 3*size(film%force_pairs), size(film%p, 3)))
+    allocate (r(3, 3, n + 3*size(arrows), size(film%p, 3)), p(3, n + 3*size(arrows), size(film%p, 3)))
     r(:, :, :n, :) = film%r
     p(:, :n, :) = film%p
-    axes = pair_axes(mechanism%pairs)
     do frame = 1, film%n_frames
-      do i = 1, size(film%force_pairs)
+      do i = 1, size(arrows)
         r(:, :, n + 3*i - 2:n + 3*i, frame) = spread(identity, 3, 3)
-        call place_arrow(foot_of(film, axes(film%force_pairs(i)), frame), tips(:, i, frame), projection, &
+        call place_arrow(film%position(frame, arrows(i)%link, arrows(i)%foot), arrows(i)%ways(:, frame), projection, &
                          p(:, n + 3*i - 2:n + 3*i, frame))
       end do
     end do
@@ -86,15 +162,14 @@ contains
   end subroutine take_arrows
 
   !> Compute the tip and the ends of the barbs of one arrow; the barbs lie across the view.
-  pure subroutine place_arrow(foot, tip, projection, places)
+  pure subroutine place_arrow(foot, way, projection, places)
     real(wp), intent(in) :: foot(3)                  !< its beginning, in the system of link 1 [m]
-    real(wp), intent(in) :: tip(3)                   !< its end [m]
+    real(wp), intent(in) :: way(3)                   !< from there to its end [m]
     type(projection_type), intent(in) :: projection  !< from space to the page
     real(wp), intent(out) :: places(3, 3)            !< of the tip and the ends of the barbs [m]
-    real(wp) :: way(3), along(3), across(3), length
+    real(wp) :: along(3), across(3), length
 
-    places = spread(tip, 2, 3)
-    way = tip - foot
+    places = spread(foot + way, 2, 3)
     if (.not. norm2(way) > 0.0_wp) return
     along = unit(way)
     across = cross(projection%view%toward, along)
@@ -106,23 +181,20 @@ contains
   end subroutine place_arrow
 
   !> Add the arrows to the scene.
-  subroutine add_force_arrows(mechanism, film, scene)
-    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+  subroutine add_arrows(arrows, film, scene)
+    type(arrow_type), intent(in) :: arrows(:)      !< all arrows
     type(film_type), intent(in) :: film            !< with the links of the arrows
     type(scene_type), intent(inout) :: scene       !< nodes and items of the picture
     real(wp), parameter :: origin(3) = 0.0_wp
-    type(pair_axes_type), allocatable :: axes(:)
-    integer :: i, j, k, foot, ends(3), first
+    integer :: i, j, foot, ends(3), first
 
-    axes = pair_axes(mechanism%pairs)
-    first = size(film%p, 2) - 3*size(film%force_pairs)
-    do i = 1, size(film%force_pairs)
-      k = film%force_pairs(i)
-      call scene%add_node(axes(k)%links(2), axes(k)%points(:, 2), foot)
+    first = size(film%p, 2) - 3*size(arrows)
+    do i = 1, size(arrows)
+      call scene%add_node(arrows(i)%link, arrows(i)%foot, foot)
       do j = 1, 3
         call scene%add_node(first + 3*(i - 1) + j, origin, ends(j))
       end do
-      call scene%add_item(segments, in_force, [foot, ends(1), ends(1), ends(2), ends(1), ends(3)])
+      call scene%add_item(segments, arrows(i)%style, [foot, ends(1), ends(1), ends(2), ends(1), ends(3)], text=arrows(i)%text)
     end do
-  end subroutine add_force_arrows
+  end subroutine add_arrows
 end module mech9_force_arrows

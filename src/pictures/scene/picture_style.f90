@@ -6,7 +6,7 @@ module mech9_picture_style
   use mech9_kinds, only: wp, pi
   use mech9_xml_text, only: decimal
   use mech9_scene, only: in_cam, as_stand, as_ring, as_ball, as_dot, as_centre, as_free, as_leader, in_damper, as_coil, as_cup, &
-    in_force, in_bracket, as_stuck
+    in_force, in_bracket, as_stuck, in_velocity, in_rolling, as_sphere
   implicit none
   private
   public :: style_type, styles, dark_colours, light_colours, signal, light_signal, colour_of, ink, style_sheet, mark_svg, &
@@ -25,7 +25,7 @@ module mech9_picture_style
   !> The style in which an item is drawn. A style with an edge is a band: a line of its width in the light colour. An
   !> edge of the dark colour is on both sides.
   type :: style_type
-    character(len=10) :: name = ''
+    character(len=12) :: name = ''
     character(len=7) :: colour = ''       !< colour of the line; empty: the dark colour of the link
     real(wp) :: width = 1.0_wp            !< [px]
     logical :: has_edge = .false.
@@ -53,7 +53,9 @@ module mech9_picture_style
     style_type('free'), style_type('name'), style_type('number'), style_type('coordinate'), &
     style_type('input'), style_type('leader'), style_type('damper', ink, 1.4_wp), style_type('coil'), style_type('cup'), &
     style_type('force', '#c00000', 2.2_wp), style_type('stop', '', 3.0_wp, .true.), &
-    style_type('pushed', signal, 3.0_wp, .true.), style_type('bracket', '', 1.5_wp), style_type('stuck')]
+    style_type('pushed', signal, 3.0_wp, .true.), style_type('bracket', '', 1.5_wp), style_type('stuck'), &
+    style_type('velocity', '#1a7a1a', 2.2_wp), style_type('acceleration', '#7a1fa2', 2.2_wp), style_type('surface', '', 1.2_wp), &
+    style_type('rolling', '', 1.1_wp), style_type('sphere')]
 
   !> The width of an edge [px].
   real(wp), parameter, public :: edge = 1.2_wp
@@ -89,6 +91,9 @@ contains
     do i = in_force, in_bracket
       css = css//rule_of(styles(i), symbol)//nl
     end do
+    do i = in_velocity, in_rolling
+      css = css//rule_of(styles(i), symbol)//nl
+    end do
     css = css//'.mech9 .plate.sheet path{fill-opacity:.85}.mech9 .end path{fill:#f2f2f2}'//nl
     do i = 1, size(dark_colours)
       css = css//colour_rules('.l'//achar(48 + i), dark_colours(i), light_colours(i))//nl
@@ -96,6 +101,8 @@ contains
     css = css//'.mech9 .pin .i,.mech9 .cross .i{stroke:#d0d0d0}.mech9 .trace path{stroke-opacity:.85}'//nl// &
           '.mech9 .pushed path.i{stroke:'//light_signal//';fill:'//light_signal//'}'// &
           '.mech9 .stuck circle{fill:'//signal//';stroke:'//paper//'}'//nl// &
+          '.mech9 .surface path{fill:#7f7f7f;fill-opacity:.15}'// &
+          '.mech9 .sphere circle{fill-opacity:.25;stroke:#555;stroke-width:1.2}'//nl// &
           '.mech9 .k{fill:'//ink//';stroke:none}.mech9 .w{fill:'//paper//';stroke:'//ink//';stroke-width:1.5}'//nl// &
           '.mech9 .h{stroke:'//ground//';stroke-width:1}.mech9 .g{stroke:'//ink//';stroke-width:1.5;fill:#e8e8e8}'//nl// &
           '.mech9 .e{stroke:#777;stroke-width:.8}.mech9 .s{stroke:'//ink//';stroke-width:1.4}'//nl
@@ -136,7 +143,8 @@ contains
   !> The SVG of a mark around the place (0, 0).
   pure function mark_svg(style, direction) result(svg)
     integer, intent(in) :: style          !< number of the mark, one of the as_ numbers of mech9_scene
-    real(wp), intent(in) :: direction(2)  !< for a stand, direction from the joint to the ground; for a leading line, its end [px]
+    real(wp), intent(in) :: direction(2)  !< for a stand, direction from the joint to the ground; for a leading line, its end; for a ball, first
+                                          !< its radius [px]
     character(len=:), allocatable :: svg
 
     select case (style)
@@ -157,6 +165,8 @@ contains
       svg = '<path class="w" style="fill:'//paper//'" d="M0 -7L7 0L0 7L-7 0Z"/><circle class="k" r="2"/>'
     case (as_stuck)
       svg = '<circle r="4"/>'
+    case (as_sphere)
+      svg = '<circle r="'//decimal(direction(1))//'"/>'
     case (as_leader)
       svg = '<path class="e" d="M0 0L'//decimal(direction(1))//' '//decimal(direction(2))//'"/>'
     case (as_coil)

@@ -52,7 +52,7 @@ contains
     type(skeleton_type), intent(in) :: skeleton       !< places at which the pairs are drawn
     type(view_type), intent(in) :: view               !< direction from which the mechanism is seen
     logical, intent(in) :: turned                     !< the reader of the picture can turn the mechanism
-    real(wp), intent(in) :: tips(:, :, :)             !< (3,pairs,frames) tips of arrows, which are seen too [m]
+    real(wp), intent(in) :: tips(:, :, :)             !< (3,arrows,frames) tips of arrows, which are seen too [m]
     type(projection_type), intent(out) :: projection  !< from space to the page
     type(box_type) :: box
     real(wp) :: middle(3), extent(2), diagonal
@@ -118,6 +118,7 @@ contains
       do i = 1, size(mechanism%points)
         call enclose(view, film%position(frame, mechanism%points(i)%link, mechanism%points(i)%position), box)
       end do
+      if (mechanism%has_contacts()) call enclose_contacts(mechanism, film, view, frame, box)
       do i = 1, size(mechanism%bodies)
         call enclose(view, film%position(frame, mechanism%bodies(i)%link, mechanism%bodies(i)%centre), box)
       end do
@@ -135,6 +136,27 @@ contains
       end do
     end do
   end subroutine enclose_motion
+
+  !> Enlarge the box by the balls of contacts.
+  pure subroutine enclose_contacts(mechanism, film, view, frame, box)
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    type(film_type), intent(in) :: film            !< poses and values at the outputs of the run
+    type(view_type), intent(in) :: view            !< direction from which the mechanism is seen
+    integer, intent(in) :: frame                   !< number of the frame in the film
+    type(box_type), intent(inout) :: box           !< bounds of what is seen, in the directions of the view [m]
+    integer :: i, sense
+
+    do i = 1, size(mechanism%contacts)
+      associate (contact => mechanism%contacts(i))
+        do sense = -1, 1, 2
+          call enclose(view, film%position(frame, contact%links(1), contact%center) + &
+                       sense*contact%radius*(view%right + view%up), box)
+          if (.not. contact%is_plane) call enclose(view, film%position(frame, contact%links(2), contact%origin) + &
+                                                   sense*contact%other_radius*(view%right + view%up), box)
+        end do
+      end associate
+    end do
+  end subroutine enclose_contacts
 
   !> Enlarge the box by the curve on which a pair guides its moving link, at the place that the curve has in a frame.
   pure subroutine enclose_curve(film, view, place, frame, box)

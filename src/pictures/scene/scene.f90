@@ -10,7 +10,7 @@ module mech9_scene
   public :: in_trace, in_curve, in_guide, in_ground, in_hatch, in_plate, in_block, in_tube, in_pin, in_pin_end, in_spring, &
             in_thread, in_cross, in_cam, as_stand, as_ring, as_ball, as_dot, as_centre, as_free, as_name, as_number, &
             as_coordinate, as_input, as_leader, in_damper, as_coil, as_cup, in_force, in_stop, in_pushed, &
-            in_bracket, as_stuck, in_pairs
+            in_bracket, as_stuck, in_velocity, in_acceleration, in_surface, in_rolling, as_sphere, in_pairs
 
   !> The shape of an item. A facing path is a flat outline that is drawn only if its front, round which it runs
   !> counterclockwise, is turned to the viewer. Segments join each node of an odd number to the next one.
@@ -22,7 +22,8 @@ module mech9_scene
                         as_stand = 15, as_ring = 16, as_ball = 17, as_dot = 18, as_centre = 19, as_free = 20, &
                         as_name = 21, as_number = 22, as_coordinate = 23, as_input = 24, as_leader = 25, &
                         in_damper = 26, as_coil = 27, as_cup = 28, in_force = 29, in_stop = 30, in_pushed = 31, &
-                        in_bracket = 32, as_stuck = 33
+                        in_bracket = 32, as_stuck = 33, in_velocity = 34, in_acceleration = 35, in_surface = 36, in_rolling = 37, &
+                        as_sphere = 38
 
   !> One thing to draw.
   type :: item_type
@@ -31,9 +32,9 @@ module mech9_scene
     integer :: link = 0                       !< link whose colour the item has; 0: none
     integer, allocatable :: nodes(:)
     integer :: above(4) = 0                   !< items below this one, whatever their depth
-    character(len=:), allocatable :: text     !< text of a label, names of the coordinates of a joint, or that of a stop
+    character(len=:), allocatable :: text     !< text of a label, names of the coordinates of a joint, or that under the pointer
     integer :: state = 0                      !< number of the state in which alone it is shown; 0: it is shown always
-    !> For a label, its place relative to its node, to the right and down [px]. For a stand, its direction; for a
+    !> For a ball, the first number is its radius [px]. For a label, its place relative to its node, to the right and down [px]. For a stand, its direction; for a
     !> leading line, its end, also to the right and down. For a spring or damper, the first number is its distance from
     !> the line between its nodes.
     real(wp) :: shift(2) = 0.0_wp

@@ -58,8 +58,8 @@ module mech9_options
                 'plot columns, as in q3,P.x or P.x:P.y; TARGET is a picture or term'), &
     option_type('sketch', needed_argument, 'FILE.svg', any_text, .false., both, &
                 'draw the mechanism at the start, or where it rests'), &
-    option_type('animate', needed_argument, 'FILE', any_text, .false., both, &
-                'draw the moving mechanism: a page (.html) or a picture (.svg, .gif)'), &
+    option_type('animate', needed_argument, 'FILE', any_text, .true., both, &
+                'draw the moving mechanism: a page (.html), .svg, .gif, or .mp4'), &
     option_type('view', needed_argument, 'VIEW', any_text, .false., both, &
                 'view of both drawings: xy, xz, ... iso, or a direction as 1,-2,1'), &
     option_type('no-write', no_argument, '', any_text, .false., both, &

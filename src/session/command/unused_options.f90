@@ -38,11 +38,28 @@ contains
       write (unit, '(a)') name//': without effect: --starts; it is the number of guesses of --branches'
     drawn = options%has('sketch')
     if (answer == '') drawn = drawn .or. options%has('animate') .or. pictures_of(model)
-    if (options%has('sketch') .and. answer /= '' .and. answer /= 'structure' .and. model%request%output%force_arrows) &
-      write (unit, '(a)') name//': without effect: force_arrows; a run draws the forces, and --'//answer//' makes none'
+    if (options%has('sketch') .and. answer /= '' .and. answer /= 'structure') then
+      call list_arrows(model, names)
+      if (names /= '') write (unit, '(a)') name//': without effect: '//names//'; a run draws the arrows, and --'//answer// &
+        ' makes none'
+    end if
     if (options%has('view') .and. (answer == 'structure' .or. .not. drawn)) &
       write (unit, '(a)') name//': without effect: --view; no picture of the mechanism is drawn'
   end subroutine print_unused_options
+
+  !> List the requested arrows of pictures: "force_arrows, velocity_arrows".
+  pure subroutine list_arrows(model, list)
+    type(model_type), intent(in) :: model               !< the model
+    character(len=:), allocatable, intent(out) :: list  !< their names in the data file, with commas
+
+    list = ''
+    associate (output => model%request%output)
+      if (output%force_arrows) list = list//', force_arrows'
+      if (output%velocity_arrows) list = list//', velocity_arrows'
+      if (output%acceleration_arrows) list = list//', acceleration_arrows'
+    end associate
+    list = list(min(3, len(list) + 1):)
+  end subroutine list_arrows
 
   !> Whether the data file requests pictures of the mechanism.
   pure logical function pictures_of(model)

@@ -4,7 +4,7 @@ module mech9_picture_requests
   use mech9_error, only: error_type, raise, add_place, exit_usage, exit_data
   use mech9_model, only: model_type
   use mech9_view, only: read_view
-  use mech9_mechanism_pictures, only: mechanism_pictures_type, kind_of_picture
+  use mech9_mechanism_pictures, only: mechanism_pictures_type, kind_of_picture, is_moving_kind, moving_endings
   use mech9_command_line, only: command_line_type
   use mech9_written_files, only: result_paths_type, find_result_paths
   implicit none
@@ -17,8 +17,6 @@ module mech9_picture_requests
     procedure :: print_words
   end type picture_requests_type
 
-  character(len=*), parameter :: moving_kinds(*) = [character(len=4) :: 'html', 'svg', 'gif']
-
 contains
 
   !> Read the requests of the options, or those of the data file where the options have none. A wrong view and a wrong
@@ -29,10 +27,11 @@ contains
     type(picture_requests_type), intent(out) :: requests   !< the pictures that are requested
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     type(result_paths_type) :: paths
+    integer :: i
 
     call find_result_paths(options, model%request%output, paths)
     requests%sketch = paths%sketch
-    requests%animation = paths%animation
+    requests%animations = paths%animations
     requests%with_masses = model%program == dynamics
     if (requests%sketch /= '' .and. kind_of_picture(requests%sketch) /= 'svg') then
       call raise(err, merge(exit_usage, exit_data, options%has('sketch')), "'"//requests%sketch// &
@@ -40,12 +39,13 @@ contains
       if (.not. options%has('sketch')) call add_place(err, place=model%request%output%sketch_place)
       return
     end if
-    if (requests%animation /= '' .and. all(moving_kinds /= kind_of_picture(requests%animation))) then
-      call raise(err, merge(exit_usage, exit_data, options%has('animate')), "'"//requests%animation// &
-                 "' is no name of a moving picture; it must end in .html, .svg or .gif")
+    do i = 1, size(requests%animations)
+      if (is_moving_kind(requests%animations(i)%text)) cycle
+      call raise(err, merge(exit_usage, exit_data, options%has('animate')), "'"//requests%animations(i)%text// &
+                 "' is no name of a moving picture; it must end in "//moving_endings)
       if (.not. options%has('animate')) call add_place(err, place=model%request%output%animation_place)
       return
-    end if
+    end do
     if (options%has('view')) then
       allocate (requests%view)
       call read_view(options%argument('view'), exit_usage, requests%view, err)
@@ -60,8 +60,11 @@ contains
   subroutine print_words(self, unit)
     class(picture_requests_type), intent(in) :: self   !< the picture requests
     integer, intent(in) :: unit                        !< the output unit
+    integer :: i
 
     if (self%sketch /= '') write (unit, '(2a)') 'sketch: ', self%sketch
-    if (self%animation /= '') write (unit, '(2a)') 'animation: ', self%animation
+    do i = 1, size(self%animations)
+      write (unit, '(2a)') 'animation: ', self%animations(i)%text
+    end do
   end subroutine print_words
 end module mech9_picture_requests

@@ -5,6 +5,8 @@ module mech9_written_files
   use mech9_replacement, only: path_of_part
   use mech9_plot, only: picture_of_plot
   use mech9_plot_drawing, only: script_of_plot
+  use mech9_mechanism_pictures, only: kind_of_picture
+  use mech9_mp4_film, only: frames_of_video
   use mech9_structure_graph, only: text_of_graph
   use mech9_xdmf, only: xdmf_path
   use mech9_command_line, only: command_line_type
@@ -21,7 +23,7 @@ module mech9_written_files
     character(len=:), allocatable :: table        !< '-' is standard output
     character(len=:), allocatable :: hdf5
     character(len=:), allocatable :: sketch
-    character(len=:), allocatable :: animation
+    type(string_type), allocatable :: animations(:)   !< moving pictures; no element: none
   end type result_paths_type
 
   !> A file that is going to be written.
@@ -43,11 +45,16 @@ contains
     call choose(options, 'hdf5', output%hdf5, paths%hdf5)
     if (options%has('continue')) paths%hdf5 = options%argument('continue')
     call choose(options, 'sketch', output%sketch, paths%sketch)
-    call choose(options, 'animate', output%animation, paths%animation)
+    if (options%has('animate')) then
+      call options%arguments('animate', paths%animations)
+    else
+      allocate (paths%animations(merge(1, 0, output%animation /= '')))
+      if (output%animation /= '') paths%animations(1)%text = output%animation
+    end if
     if (options%has('study')) then
       ! a study draws no pictures
       paths%sketch = ''
-      paths%animation = ''
+      paths%animations = paths%animations(:0)
     end if
     if (options%has('no-write')) then
       paths%table = ''
@@ -89,6 +96,7 @@ contains
     type(output_settings_type), intent(in) :: output                  !< the group &output of the data file
     type(written_file_type), allocatable, intent(inout) :: files(:)   !< gets the results
     type(result_paths_type) :: paths
+    integer :: i
 
     call find_result_paths(options, output, paths)
     if (paths%table == standard_output_path) then
@@ -107,7 +115,11 @@ contains
       call append(files, 'the description for ParaView beside the HDF5 file', xdmf_path(paths%hdf5))
     call list_plots(options, paths%table, files)
     call append(files, name_of(options, 'sketch', 'sketch'), paths%sketch)
-    call append(files, name_of(options, 'animate', 'animation'), paths%animation)
+    do i = 1, size(paths%animations)
+      call append(files, name_of(options, 'animate', 'animation'), paths%animations(i)%text)
+      if (kind_of_picture(paths%animations(i)%text) == 'mp4') &
+        call append(files, 'the frames of an MP4', frames_of_video(paths%animations(i)%text))
+    end do
   end subroutine list_results
 
   !> Add plots, each with its script.
@@ -173,6 +185,8 @@ contains
   pure subroutine list_of_equilibrium(options, files)
     type(command_line_type), intent(in) :: options                    !< the command line
     type(written_file_type), allocatable, intent(inout) :: files(:)   !< gets the files
+    type(string_type), allocatable :: films(:)
+    integer :: i
 
     if (options%has('table')) then
       call append(files, '--table', options%argument('table'))
@@ -183,7 +197,10 @@ contains
     if (options%has('hdf5')) call append(files, 'the beginning of the HDF5 file', path_of_part(options%argument('hdf5')))
     call append(files, '--linear', options%argument('linear'))
     if (options%has('linear')) call append(files, 'the beginning of --linear', path_of_part(options%argument('linear')))
-    call append(files, '--animate', options%argument('animate'))
+    call options%arguments('animate', films)
+    do i = 1, size(films)
+      call append(files, '--animate', films(i)%text)
+    end do
   end subroutine list_of_equilibrium
 
   !> Append a file; none where the path is empty.

@@ -14,8 +14,8 @@ module mech9_study_definition
 
   character, parameter :: line_end = achar(10)
   !> Names of &output that tell where and how results are kept, and change none of them.
-  character(len=*), parameter :: places(*) = [character(len=12) :: 'table', 'hdf5', 'sketch', 'animation', 'view', 'compression', &
-                                              'poses', 'force_arrows']
+  character(len=*), parameter :: places(*) = [character(len=19) :: 'table', 'hdf5', 'sketch', 'animation', 'view', 'compression', &
+                                              'poses', 'force_arrows', 'velocity_arrows', 'acceleration_arrows']
   !> Groups that change no numbers where nothing else stands in them.
   character(len=*), parameter :: groups_of_places(*) = [character(len=7) :: 'output', 'optimum']
   !> The polynomial of the cyclic redundancy check of 64 bits (ECMA-182), its bits in reverse order, in two halves.

@@ -59,10 +59,10 @@ contains
     call ask(tester, 'a.nml', '', requests, err)
     call tester%is_true(.not. requests%any_wanted() .and. .not. allocated(requests%view), 'no picture')
     call ask(tester, 'a.nml', groups, requests, err)
-    call tester%is_true(requests%sketch == 'a.svg' .and. requests%animation == 'a.html', 'those of the data file')
+    call tester%is_true(requests%sketch == 'a.svg' .and. requests%animations(1)%text == 'a.html', 'those of the data file')
     call ask(tester, 'a.nml --animate b.gif', groups, requests, err)
     call tester%no_error(err, 'a film of the options')
-    call tester%is_true(requests%sketch == 'a.svg' .and. requests%animation == 'b.gif', 'an option takes the place of one')
+    call tester%is_true(requests%sketch == 'a.svg' .and. requests%animations(1)%text == 'b.gif', 'an option takes the place of one')
     call tester%is_true(requests%any_wanted(), 'pictures')
   end subroutine options_first
 
