@@ -224,3 +224,66 @@ def test_belts_are_tangent_to_their_pulleys(checks, mech9k, tmp_path):
     upper = min(circles, key=lambda circle: circle[0][1])
     checks.true(any(abs(np.hypot(*(upper[0] - middle)) - upper[1] - radius) < 0.05 and abs(upper[1] / radius - 2) < 1e-2
                     for middle, radius in circles), 'gears touch')
+
+
+# sun, carrier and planet beside a held ring, by equations of angles against the frame; the wheels have 20, 16 and 52 teeth
+PLANETARY = """&mechanism title='planetary gear' /
+&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=1,3, kind='revolute', axis=0,0,{sense} /
+&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1, point=0.036,0,0, moving_point=0,0,0 /
+&coupling kind='linear', coordinates=1,2,3, coefficients=20,{less},16 /
+&coupling kind='linear', coordinates=2,3, coefficients={ring},16 /
+&drive coordinate=1, kind='polynomial', coefficients=0, 9 /
+&time end=1, intervals=20 /
+"""
+
+
+@pytest.mark.parametrize('sense', (1, -1))
+def test_wheels_of_linear_couplings(checks, mech9k, tmp_path, sense):
+    """Sun 20 (w1 - wc) + 16 (wp - wc) = 0 and ring 52 (0 - wc) = 16 (wp - wc): the pitch circles have these radii and touch."""
+    data = tmp_path / 'gear.nml'
+    data.write_text(PLANETARY.format(sense=sense, less=-20 * sense, ring=52 * sense), encoding='utf-8')
+    planet, sun, ring = sorted(circles_of(picture(checks, mech9k, data, tmp_path)), key=lambda circle: circle[1])
+    unit = ring[1] / 52
+    checks.near([planet[1] / unit, sun[1] / unit], [16, 20], 0.01, 'teeth of planet and sun')
+    checks.near(np.hypot(*(planet[0] - sun[0])) / unit, 36, 0.01, 'sun and planet touch')
+    checks.near(np.hypot(*(ring[0] - sun[0])) / unit, 0, 0.05, 'sun and ring have one axis')
+
+
+def test_wheels_about_one_axis(checks, mech9k, tmp_path):
+    """A ring of twice the teeth of the sun, whose planets are no links, is drawn with one of them."""
+    data = tmp_path / 'gear.nml'
+    data.write_text("""&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=1,3, kind='revolute', axis=0,0,1 /
+&pair coordinate=3, links=1,4, kind='revolute', axis=0,0,1 /
+&coupling kind='linear', coordinates=1,2,3, coefficients=1,2,-3 /
+&point name='A', link=4, position=0.1,0,0 /
+&drive coordinate=1, kind='polynomial', coefficients=0, 1 /
+&drive coordinate=2, kind='polynomial', coefficients=0, 0.5 /
+&time end=1, intervals=20 /
+""", encoding='utf-8')
+    planet, sun, ring = sorted(circles_of(picture(checks, mech9k, data, tmp_path)), key=lambda circle: circle[1])
+    checks.near([sun[1] / ring[1], planet[1] / ring[1]], [0.5, 0.25], 0.01, 'sizes by the teeth')
+    checks.near(np.hypot(*(planet[0] - sun[0])) / ring[1], 0.75, 0.01, 'the planet is between both')
+
+
+def test_linear_couplings_that_are_no_gears(checks, mech9k, tmp_path):
+    """Equal angles, sums of slides, and angles about axes that are not parallel have no wheels."""
+    data = tmp_path / 'none.nml'
+    text = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=1,3, kind='{kind}', axis={axis}, point=0.5,0,0 /
+&coupling kind='linear', coordinates=1,2, coefficients={numbers} /
+&point name='A', link=2, position=0.1,0,0 /
+&point name='B', link=3, position=0.1,0,0 /
+&drive coordinate=1, kind='polynomial', coefficients=0, 1 /
+&time end=1, intervals=20 /
+"""
+    for kind, axis, numbers in (('revolute', '0,0,1', '1,-1'), ('prismatic', '1,0,0', '1,2'), ('revolute', '0,1,0.1', '1,2')):
+        data.write_text(text.format(kind=kind, axis=axis, numbers=numbers), encoding='utf-8')
+        checks.equal(circles_of(picture(checks, mech9k, data, tmp_path)), [], f'{kind} {axis} {numbers}: no wheels')
+    data.write_text(text.format(kind='revolute', axis='0,0,1', numbers='2,1'), encoding='utf-8')
+    small, large = sorted(circles_of(picture(checks, mech9k, data, tmp_path)), key=lambda circle: circle[1])
+    checks.near(large[1] / small[1], 2, 0.01, 'two wheels of the frame by a linear equation')

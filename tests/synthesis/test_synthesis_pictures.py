@@ -159,6 +159,30 @@ def test_sketch_and_film_show_the_best_design(cases):
         check.true(os.path.getsize(film) > 10000 and '18' in text_of(film), f'film: {os.path.basename(film)}')
 
 
+def test_drawings_show_poses(cases):
+    """Each pose is an arrow from its place along the x axis of the link, and the link has the same arrow."""
+    check = cases.checks
+    folder = os.path.join(TREE, 'examples', 'three_poses')
+    text = text_of(os.path.join(folder, 'three_poses.nml')).replace('starts=20', 'starts=2')
+    poses = np.array([line.split()[:3] for line in text_of(os.path.join(folder, 'poses.dat')).splitlines()
+                      if line.strip() and line.lstrip()[0] not in '#!'], float)
+    np.savetxt(cases.path('poses.dat'), poses)
+    cases.search(text, '--sketch', cases.path('best.svg'), '--animate', cases.path('best.html'), why='poses')
+    sketch = text_of(cases.path('best.svg'))
+    found = re.findall(r'<g class="target" data-i="\d+"><title>pose (\d+) of link 3</title><path d="([^"]*)"', sketch)
+    check.equal([int(number) for number, _ in found], [1, 2, 3], 'poses: each is drawn, and named under the pointer')
+    lines = np.array([[[float(x) for x in corner.split()] for corner in re.findall('[ML]([^ML]+)', path)] for _, path in found])
+    places, tips, across = lines[:, 0]*[1, -1], lines[:, 1]*[1, -1], lines[:, 7]*[1, -1]
+    way, side = tips - places, across - places
+    angles = np.degrees(np.arctan2(way[:, 1], way[:, 0]))
+    check.near((angles - poses[:, 2] + 180) % 360, [180]*3, 2e-3, 'poses: their angles')
+    check.near(way[:, 0]*side[:, 1] - way[:, 1]*side[:, 0], np.hypot(*way.T)*np.hypot(*side.T), 1e-2, 'poses: y is on the left of x')
+    scale = np.ptp(places[:, 0])/np.ptp(poses[:, 0])
+    check.near((places - places[0])/scale, poses[:, :2] - poses[0, :2], 1e-2, 'poses: their places')
+    own = re.findall(r'<g class="bracket l\d+" data-i="\d+"><path d="([^"]*)"', sketch)
+    check.equal([len(re.findall('[ML]', path)) for path in own], [8], 'poses: the link has such an arrow')
+
+
 @pytest.mark.parametrize('words, options', (
     ("none is about 'Q'; there are P", ('--plot', 'fit.svg:Q')),
     ("none is about 'P.x:P.y'; there are P", ('--plot', 'P.x:P.y')),

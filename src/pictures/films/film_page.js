@@ -21,6 +21,7 @@ function draw(frame) {
   $("now").textContent = text;
   if (clock) clock.textContent = "t = " + text;
   if ($("values").open) writeValues();
+  if ($("curves").open) markPlot(frame);
 }
 
 // Time is measured between the frames of the browser, from the first one after a start or a pause, whatever other
@@ -181,6 +182,13 @@ $("home").addEventListener("click", resetView);
 $("image").addEventListener("click", saveImage);
 $("names").addEventListener("change", event => svg.classList.toggle("bare", !event.target.checked));
 $("filter").addEventListener("input", listValues);
+$("columns").addEventListener("input", drawPlot);
+$("curves").addEventListener("toggle", () => markPlot(shown));
+for (const kind of ["pointerdown", "pointermove"]) $("plot").addEventListener(kind, event => {
+  if (!(event.buttons & 1)) return;
+  const at = new DOMPoint(event.clientX, event.clientY).matrixTransform($("plot").getScreenCTM().inverse());
+  show(frameAt(at.x, at.y));
+});
 $("values").addEventListener("toggle", writeValues);
 addEventListener("resize", drawView);
 
@@ -192,6 +200,11 @@ if (span >= 0.05 && span != length) speed.add(new Option("real time", length/spa
 for (const id of ["play", "back", "forward", "frame", "speed"]) $(id).disabled = frames < 2;
 $("values").hidden = !film.names.length;
 $("values").open = innerWidth > 600;
+$("curves").hidden = !film.names.length || frames < 2;
+$("curves").open = innerWidth > 600;
+$("columns").value = film.plot || film.names.filter(name => /^q\d+$/.test(name)).slice(0, 3).join(",") || film.names[0] || "";
+for (const name of columnNames) $("column-names").append(new Option(name));
+if (!$("curves").hidden) drawPlot();
 listValues();
 drawView();
 draw(0);

@@ -124,14 +124,14 @@ function drawAxes() {
   });
 }
 
-// The bar of the scale is the longest one of 1, 2, 5, 10, ... m that is at most 90 px long.
+// The bar of the scale is the longest one of 1, 2, 5, 10, ... units that is at most 90 px long.
 function drawScale() {
-  const [line, text] = svg.querySelector("#scale").children, most = 90/(film.scale*zoom);
+  const [line, text] = svg.querySelector("#scale").children, unit = film.length*film.scale*zoom, most = 90/unit;
   const power = 10**Math.floor(Math.log10(most) + 1e-9);
   const bar = [5, 2, 1].find(part => part*power <= most*(1 + 1e-9))*power;
-  const length = bar*film.scale*zoom, box = svg.viewBox.baseVal;
+  const length = bar*unit, box = svg.viewBox.baseVal;
   line.setAttribute("d", "M" + at(box.width - 90 - length, box.height - 19) + "v5h" + length.toFixed(2) + "v-5");
-  text.textContent = Number(bar.toPrecision(3)) + " m";
+  text.textContent = Number(bar.toPrecision(3)) + " " + film.lengthUnit;
 }
 
 // The whole present frame is drawn, after a change of the view.

@@ -27,13 +27,14 @@ module mech9_html_film
 contains
 
   !> Write the page to a file. Errors are exit_file.
-  subroutine save_html_film(path, title, scene, film, projection, planar, err)
+  subroutine save_html_film(path, title, scene, film, projection, planar, plot, err)
     character(len=*), intent(in) :: path  !< name of the file
     character(len=*), intent(in) :: title !< title of the mechanism, any text
     type(scene_type), intent(in) :: scene !< nodes and items of the picture
     type(film_type), intent(in) :: film   !< poses and values at the outputs of the run
     type(projection_type), intent(in) :: projection !< from space to the page
     logical, intent(in) :: planar         !< the mechanism is seen along the normal of its plane, so that dragging moves it at first
+    character(len=*), intent(in) :: plot  !< columns that are plotted at first, as for --plot; empty: some coordinates
     type(error_type), allocatable, intent(out) :: err !< allocated if it failed
     type(page_type) :: page
 
@@ -51,22 +52,28 @@ contains
     call put_picture(title, scene, film, projection, 1, .true., page)
     call page%line('</figure>')
     call put_controls(page)
-    call page%line('</section><details id="values"><summary>Values</summary>')
+    call page%line('</section><div id="beside"><details id="curves"><summary>Plot</summary>')
+    call page%line('<input id="columns" type="search" list="column-names" placeholder="columns: q1,q2 or P.x:P.y" '// &
+                   'aria-label="Columns of the plot"/>')
+    call page%line('<datalist id="column-names"></datalist><svg id="plot" role="img" aria-label="plot"></svg>')
+    call page%line('<p id="plot-note"></p>')
+    call page%line('</details><details id="values"><summary>Values</summary>')
     call page%line('<input id="filter" type="search" placeholder="names, or parts of them: q1 P." aria-label="Names of columns"/>')
-    call page%line('<dl id="list"></dl><p id="more"></p></details></main>')
+    call page%line('<dl id="list"></dl><p id="more"></p></details></div></main>')
     call page%line('<script>')
-    call put_film(scene, film, projection, planar, page)
+    call put_film(scene, film, projection, planar, plot, page)
     call put_script(page)
     call page%line('</script></body></html>')
     call page%save(path, err)
   end subroutine save_html_film
 
   !> Append the data for the script as one constant.
-  subroutine put_film(scene, film, projection, planar, page)
+  subroutine put_film(scene, film, projection, planar, plot, page)
     type(scene_type), intent(in) :: scene            !< nodes and items of the picture
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
     type(projection_type), intent(in) :: projection  !< from space to the page
     logical, intent(in) :: planar                    !< the mechanism is planar and seen along the normal of its plane
+    character(len=*), intent(in) :: plot             !< columns that are plotted at first, as for --plot; empty: some coordinates
     type(page_type), intent(inout) :: page           !< text to which the page is appended
     integer :: numbers(size(film%p, 2))              !< numbers of the links that have nodes; 0: other links, and link 1
     real(wp) :: unit
@@ -81,6 +88,7 @@ contains
       numbers(scene%node_link(i)) = count
     end do
     call page%put('const film = {unit: '//to_text(unit, 17)//', scale: '//to_text(projection%scale, 17))
+    call page%put(', length: '//to_text(projection%length, 17)//', lengthUnit: "'//trim(projection%length_name)//'"')
     call page%put(', symbol: '//to_text(projection%symbol, 6)//', middle: ['//decimal(projection%middle(1))//', '// &
                   decimal(projection%middle(2))//'], sorted: ['//to_text(scene%first_sorted)//', '// &
                   to_text(scene%last_sorted)//'],'//new_line('a')//'view: [')
@@ -99,6 +107,8 @@ contains
     call put_frames(film, numbers, count, projection%centre, unit, page)
     call put_states(scene, page)
     call put_values(film, page)
+    ! names of columns hold no letter that has a meaning here
+    if (scan(plot, '"<\') == 0) call page%line('plot: "'//plot//'",')
     call page%line('};')
   end subroutine put_film
 

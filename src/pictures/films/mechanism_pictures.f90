@@ -23,6 +23,7 @@ module mech9_mechanism_pictures
   use mech9_svg_film, only: save_svg_film
   use mech9_gif_film, only: save_gif_film
   use mech9_mp4_film, only: save_mp4_film
+  use mech9_pose_marks, only: pose_mark_type
   implicit none
   private
   public :: mechanism_pictures_type, kind_of_picture, is_moving_kind, moving_endings
@@ -34,8 +35,10 @@ module mech9_mechanism_pictures
   type :: mechanism_pictures_type
     character(len=:), allocatable :: sketch
     type(string_type), allocatable :: animations(:)   !< moving pictures; not allocated: none
+    character(len=:), allocatable :: plot     !< columns that a page plots at first, as for --plot; not allocated: some coordinates
     type(view_type), allocatable :: view      !< unless the best one is to be found
     logical :: with_masses = .false.          !< bodies count in this program
+    type(pose_mark_type), allocatable :: poses(:)     !< poses that links should take; not allocated: none
   contains
     procedure :: any_wanted
     procedure :: save => save_pictures
@@ -114,12 +117,16 @@ contains
     type(scene_type) :: scene
     type(film_type) :: shown
     type(arrow_type), allocatable :: arrows(:)
+    type(pose_mark_type), allocatable :: poses(:)
+    character(len=:), allocatable :: plot
     logical :: page
 
     page = moving .and. kind_of_picture(path) == 'html'
     call find_arrows(model%mechanism, film, skeleton%size, arrows)
     call fit_projection(model%mechanism, film, skeleton, view, page .and. .not. planar, tips_of(arrows, film), projection)
-    call make_scene(model%mechanism, film, skeleton, projection, planar, self%with_masses, scene)
+    allocate (poses(0))
+    if (allocated(self%poses)) poses = self%poses
+    call make_scene(model%mechanism, film, skeleton, projection, planar, self%with_masses, poses, scene)
     shown = film
     if (size(arrows) > 0) then
       call take_arrows(arrows, film, projection, shown)
@@ -128,7 +135,9 @@ contains
     if (.not. moving) then
       call save_sketch(path, model%mechanism%title, scene, shown, projection, 1, err)
     else if (page) then
-      call save_html_film(path, model%mechanism%title, scene, shown, projection, planar, err)
+      plot = ''
+      if (allocated(self%plot)) plot = self%plot
+      call save_html_film(path, model%mechanism%title, scene, shown, projection, planar, plot, err)
     else if (kind_of_picture(path) == 'gif') then
       call save_gif_film(path, model%mechanism%title, scene, shown, projection, err)
     else if (kind_of_picture(path) == 'mp4') then

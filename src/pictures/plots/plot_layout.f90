@@ -139,7 +139,7 @@ contains
 
     associate (unit => data%units(curves(1)%x)%text)
       equal_scales = unit == data%units(curves(1)%y)%text .and. .not. over_time(curves(1)) &
-                     .and. index(unit, 'deg') /= 1 .and. index(unit, 'rad') /= 1
+                     .and. index(unit, 'deg') /= 1 .and. index(unit, 'rad') /= 1 .and. unit /= 'rpm'
     end associate
     if (equal_scales) equal_scales = maxval(spans_of(curves, data)) > tiny(1.0_wp)
   end function equal_scales

@@ -15,10 +15,12 @@ module mech9_label_obstacles
   !> them. There is an entry for each style of mech9_scene. Styles with zeros are no obstacles.
   real(wp), parameter :: reach(*) = [1.0_wp, 1.0_wp, 1.0_wp, 5.0_wp, 0.0_wp, 4.7_wp, 8.7_wp, 7.2_wp, 6.2_wp, 0.0_wp, 6.5_wp, &
                                      4.0_wp, 2.8_wp, 1.0_wp, 7.0_wp, 6.0_wp, 8.5_wp, 4.0_wp, 5.5_wp, 7.5_wp, &
-                                     0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 6.0_wp, 13.0_wp, 17.0_wp, 0.0_wp, 6.0_wp]
+                                     0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 6.0_wp, 13.0_wp, 17.0_wp, 0.0_wp, 6.0_wp, &
+                                     0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 1.5_wp]
   real(wp), parameter :: weights(*) = [0.9_wp, 0.7_wp, 0.5_wp, 1.2_wp, 0.0_wp, 1.0_wp, 1.0_wp, 1.0_wp, 1.2_wp, 0.0_wp, 0.8_wp, &
                                        0.8_wp, 1.2_wp, 0.7_wp, 0.8_wp, 1.5_wp, 1.5_wp, 1.5_wp, 1.5_wp, 1.5_wp, &
-                                       0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.8_wp, 0.7_wp, 0.7_wp, 0.0_wp, 1.0_wp]
+                                       0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.8_wp, 0.7_wp, 0.7_wp, 0.0_wp, 1.0_wp, &
+                                       0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.3_wp, 0.0_wp, 1.0_wp]
   !> The cost of covering the lines that every page has: the title and the foot.
   real(wp), parameter :: furniture = 2.0_wp
 

@@ -14,6 +14,7 @@ module mech9_scene_making
   use mech9_pair_symbols, only: symbols_type, prepare_symbols, add_guides, add_stands, add_symbols
   use mech9_spring_symbols, only: add_springs
   use mech9_contact_symbols, only: add_planes, add_balls
+  use mech9_pose_marks, only: pose_mark_type, add_poses
   use mech9_stop_symbols, only: add_stops, add_stuck_pairs
   use mech9_scene_labels, only: add_labels
   implicit none
@@ -33,13 +34,14 @@ module mech9_scene_making
 contains
 
   !> Make the scene of a film. It is made for one projection, since the symbols have a fixed size on the page.
-  subroutine make_scene(mechanism, film, skeleton, projection, planar, with_masses, scene)
+  subroutine make_scene(mechanism, film, skeleton, projection, planar, with_masses, poses, scene)
     type(mechanism_type), intent(in) :: mechanism    !< the mechanism
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
     type(skeleton_type), intent(in) :: skeleton      !< places at which the pairs are drawn
     type(projection_type), intent(in) :: projection  !< from space to the page
     logical, intent(in) :: planar                    !< the mechanism is planar and seen along the normal of its plane
     logical, intent(in) :: with_masses               !< mark the mass centres
+    type(pose_mark_type), intent(in) :: poses(:)     !< poses that links should take
     type(scene_type), intent(out) :: scene           !< nodes and items of the picture
     type(symbols_type) :: symbols
     type(outline_type) :: outlines(skeleton%graph%n_links)
@@ -71,6 +73,7 @@ contains
     call add_symbols(film, skeleton, projection, shapes, scene, symbols)
     scene%last_sorted = scene%n_items
     call add_points(mechanism, with_masses, nodes, scene)
+    call add_poses(poses, projection, scene)
     if (mechanism%has_frictions()) call add_stuck_pairs(mechanism, film, symbols, scene)
     associate (shown => mechanism%structure%shown_links())
       call add_labels(mechanism, film, projection, symbols, nodes, shown_by(outlines(:shown), shapes(:shown), scene), scene)

@@ -7,7 +7,8 @@ module mech9_svg_picture
   use mech9_film_clock, only: clock_decimals, clock_text
   use mech9_projection, only: projection_type
   use mech9_scene, only: scene_type, item_type, closed_path, facing_path, mark, label, in_pairs, in_stop, in_pushed, &
-                         as_stuck, in_force, in_velocity, in_acceleration, in_surface, as_sphere
+                         as_stuck, in_force, in_velocity, in_acceleration, in_surface, as_sphere, &
+                         in_target
   use mech9_drawing, only: drawing_type, draw_frame, drawing_order, outline_of
   use mech9_picture_style, only: styles, colour_of, style_sheet, mark_svg
   use mech9_page, only: page_type
@@ -125,11 +126,11 @@ contains
     if (allocated(item%text) .and. item%shape /= label .and. .not. has_tooltip(item)) tag = tag//' data-joint="'//item%text//'"'
   end function opening_of
 
-  !> Whether a browser shows the text of an item under the pointer: it is a stop, a mark of friction, an arrow or a contact.
+  !> Whether a browser shows the text of an item under the pointer: it is a stop, a mark of friction, an arrow, a contact or a pose.
   pure logical function has_tooltip(item)
     type(item_type), intent(in) :: item  !< one thing to draw
     integer, parameter :: with_tooltips(*) = [in_stop, in_pushed, as_stuck, in_force, in_velocity, in_acceleration, in_surface, &
-                                              as_sphere]
+                                              as_sphere, in_target]
 
     has_tooltip = allocated(item%text) .and. any(item%style == with_tooltips)
   end function has_tooltip

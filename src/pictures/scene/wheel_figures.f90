@@ -11,19 +11,10 @@ module mech9_wheel_figures
   use mech9_film, only: film_type
   use mech9_pair_axes, only: turning, sliding
   use mech9_skeleton, only: skeleton_type, append_figure, wheel_figure, belt_figure
+  use mech9_gear_meshes, only: partner_type, find_partners, find_planetary
   implicit none
   private
   public :: find_figures
-
-  !> A pair of a coupling, as it is seen from the link that both pairs of the coupling share.
-  type :: partner_type
-    integer :: link = 0                 !< the other link, a wheel or a rack
-    integer :: side = 1                 !< 1: the common link is the reference link of the pair, 2: its moving link
-    real(wp) :: point(3) = 0.0_wp       !< of the axis, in the common link [m]
-    real(wp) :: axis(3) = 0.0_wp        !< its direction, in the common link, of unit length
-    real(wp) :: own_point(3) = 0.0_wp   !< the point, in the other link [m]
-    real(wp) :: own_axis(3) = 0.0_wp    !< the direction, in the other link
-  end type partner_type
 
   integer, parameter :: corners = 72                !< of a circle
   !> Lengths below this part of the mechanism's size are zero, and sines below the second number.
@@ -33,7 +24,7 @@ module mech9_wheel_figures
 
 contains
 
-  !> Add the figures of all couplings between two pairs of one link to a skeleton whose places are known.
+  !> Add the figures of all couplings between two pairs of one link, and of planetary gears, to a skeleton whose places are known.
   subroutine find_figures(mechanism, film, skeleton)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(film_type), intent(in) :: film             !< poses and values at the outputs of the run
@@ -45,6 +36,7 @@ contains
     do i = 1, size(mechanism%couplings)
       select type (coupling => mechanism%couplings(i)%coupling)
       type is (linear_coupling_type)
+        if (coupling%name == 'linear') call add_planetary(film, coupling%coordinates, coupling%coefficients, skeleton)
         if (size(coupling%coordinates) /= 2) cycle
         call find_partners(skeleton, coupling%coordinates, pair, common)
         if (common == 0) cycle
@@ -62,37 +54,55 @@ contains
     end do
   end subroutine find_figures
 
-  !> Find both pairs of a coupling, as seen from the link that they share; no link: 0.
-  subroutine find_partners(skeleton, coordinates, pair, common)
-    type(skeleton_type), intent(in) :: skeleton      !< places at which the pairs are drawn
-    integer, intent(in) :: coordinates(2)            !< numbers of the pairs
-    type(partner_type), intent(out) :: pair(2)       !< both pairs
-    integer, intent(out) :: common                   !< number of the link that they share; 0: none, or both links
-    integer :: i, j, shared
+  !> Add the wheels of a linear equation of turning pairs that a planetary gear has.
+  subroutine add_planetary(film, coordinates, coefficients, skeleton)
+    type(film_type), intent(in) :: film             !< poses at the outputs of the run; the first one is used
+    integer, intent(in) :: coordinates(:)           !< numbers of the pairs
+    real(wp), intent(in) :: coefficients(:)         !< of their coordinates
+    type(skeleton_type), intent(inout) :: skeleton  !< gets the circles
+    type(partner_type) :: pair(2)
+    integer :: carrier
+    real(wp) :: ratio
 
-    common = 0
-    shared = 0
-    do i = 1, 2
-      do j = 1, 2
-        if (skeleton%places(coordinates(1))%links(i) /= skeleton%places(coordinates(2))%links(j)) cycle
-        common = skeleton%places(coordinates(1))%links(i)
-        shared = shared + 1
-        pair(1)%side = i
-        pair(2)%side = j
-      end do
-    end do
-    if (shared /= 1) common = 0
-    if (common == 0) return
-    do i = 1, 2
-      associate (place => skeleton%places(coordinates(i)), side => pair(i)%side)
-        pair(i)%link = place%links(3 - side)
-        pair(i)%point = place%points(:, side)
-        pair(i)%axis = place%axes(:, side)
-        pair(i)%own_point = place%points(:, 3 - side)
-        pair(i)%own_axis = place%axes(:, 3 - side)
-      end associate
-    end do
-  end subroutine find_partners
+    call find_planetary(film, skeleton, coordinates, coefficients, pair, carrier, ratio)
+    if (carrier == 0) return
+    if (norm2(cross(pair(1)%axis, pair(2)%point - pair(1)%point)) > same*skeleton%size) then
+      call add_gears(pair, ratio, skeleton)
+    else
+      call add_epicyclic(pair, carrier, ratio, skeleton)
+    end if
+  end subroutine add_planetary
+
+  !> Add sun and ring about one axis, and a planet between them that is no link. Only the ratio of their sizes is known.
+  subroutine add_epicyclic(pair, carrier, ratio, skeleton)
+    type(partner_type), intent(in) :: pair(2)       !< sun and ring, in any order
+    integer, intent(in) :: carrier                  !< number of the link that carries the planets
+    real(wp), intent(in) :: ratio                   !< turn of the second wheel per turn of the first one, negative
+    type(skeleton_type), intent(inout) :: skeleton  !< gets the circles
+    real(wp), parameter :: largest_part = 0.4_wp    ! radius of the ring in the mechanism's size
+    type(partner_type) :: planet
+    real(wp) :: radii(2), across(3), along
+    integer :: ring
+
+    radii = largest_part*skeleton%size*[1.0_wp, 1.0_wp]
+    if (abs(ratio) < 1.0_wp) then
+      radii(1) = abs(ratio)*radii(2)
+      ring = 2
+    else
+      radii(2) = radii(1)/abs(ratio)
+      ring = 1
+    end if
+    if (abs(radii(1) - radii(2)) <= same*skeleton%size) return
+    along = dot_product(pair(1)%point - pair(2)%point, pair(2)%axis)
+    call add_circle(pair(1), 0.0_wp, radii(1), ring == 1, skeleton)
+    call add_circle(pair(2), along, radii(2), ring == 2, skeleton)
+    across = default_zero(pair(1)%axis)
+    across = unit(across - dot_product(across, pair(1)%axis)*pair(1)%axis)
+    planet%link = carrier
+    planet%own_point = pair(1)%point + 0.5_wp*sum(radii)*across
+    planet%own_axis = pair(1)%axis
+    call add_circle(planet, 0.0_wp, 0.5_wp*abs(radii(1) - radii(2)), .false., skeleton)
+  end subroutine add_epicyclic
 
   !> Add the pitch circles of two gears, of parallel shafts or of shafts whose axes meet.
   subroutine add_gears(pair, ratio, skeleton)
@@ -250,7 +260,9 @@ contains
     do i = 1, size(skeleton%figures)
       associate (figure => skeleton%figures(i))
         if (figure%link /= wheel%link .or. size(figure%points, 2) /= size(points, 2)) cycle
+        ! the same circle may run the other way round
         if (maxval(abs(figure%points(:, 2:) - points(:, 2:))) <= same*skeleton%size) return
+        if (maxval(abs(figure%points(:, 2:) - points(:, size(points, 2):2:-1))) <= same*skeleton%size) return
       end associate
     end do
     call append_figure(wheel%link, points, wheel_figure, skeleton)

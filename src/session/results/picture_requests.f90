@@ -2,7 +2,9 @@
 module mech9_picture_requests
   use mech9_program_kind, only: dynamics
   use mech9_error, only: error_type, raise, add_place, exit_usage, exit_data
+  use mech9_text, only: string_type
   use mech9_model, only: model_type
+  use mech9_plot_request, only: plot_request_type, take_target
   use mech9_view, only: read_view
   use mech9_mechanism_pictures, only: mechanism_pictures_type, kind_of_picture, is_moving_kind, moving_endings
   use mech9_command_line, only: command_line_type
@@ -27,12 +29,19 @@ contains
     type(picture_requests_type), intent(out) :: requests   !< the pictures that are requested
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     type(result_paths_type) :: paths
-    integer :: i
+    type(string_type), allocatable :: plots(:)
+    type(plot_request_type) :: plot
+    integer :: i, at
 
     call find_result_paths(options, model%request%output, paths)
     requests%sketch = paths%sketch
     requests%animations = paths%animations
     requests%with_masses = model%program == dynamics
+    call options%arguments('plot', plots)
+    if (size(plots) > 0 .and. .not. options%has('optimize')) then
+      call take_target(plots(1)%text, plot, at)
+      requests%plot = plots(1)%text(at:)
+    end if
     if (requests%sketch /= '' .and. kind_of_picture(requests%sketch) /= 'svg') then
       call raise(err, merge(exit_usage, exit_data, options%has('sketch')), "'"//requests%sketch// &
                  "' is no name of a sketch; it must end in .svg")

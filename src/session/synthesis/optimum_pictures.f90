@@ -15,6 +15,7 @@ module mech9_optimum_pictures
   use mech9_film, only: film_type
   use mech9_picture_requests, only: picture_requests_type, read_picture_requests
   use mech9_written_files, only: result_paths_type, find_result_paths
+  use mech9_pose_marks, only: pose_mark_type
   use mech9_plot, only: picture_of_plot
   use mech9_plot_drawing, only: draw_picture, draw_in_terminal, script_of_plot
   use mech9_terminal_size, only: find_terminal_size
@@ -160,29 +161,33 @@ contains
     type(synthesis_type), intent(in) :: synthesis               !< with its targets
     logical, intent(in) :: quiet                                !< nothing is told
     type(diagnostics_type), intent(inout) :: diagnostics        !< gets the errors
+    type(picture_requests_type) :: drawings
     type(model_type) :: shown
     type(film_type) :: film
     type(error_type), allocatable :: err
 
     shown = motion%model
-    call add_targets(synthesis, shown)
+    drawings = self%drawings
+    call add_targets(synthesis, shown, drawings)
     call motion%make_film(shown, film, err)
-    if (.not. allocated(err)) call self%drawings%save(shown, film, err)
+    if (.not. allocated(err)) call drawings%save(shown, film, err)
     if (allocated(err)) then
       call diagnostics%add_error(err)
     else if (.not. quiet) then
-      call self%drawings%print_words(error_unit)
+      call drawings%print_words(error_unit)
     end if
   end subroutine draw_film
 
-  !> Add the places of targets to a model as points of link 1, named by their numbers within their objective.
-  subroutine add_targets(synthesis, shown)
+  !> Add the places of targets to a model as points of link 1, named by their numbers within their objective, and the poses to the drawings.
+  subroutine add_targets(synthesis, shown, drawings)
     type(synthesis_type), intent(in) :: synthesis        !< with its targets
     type(model_type), intent(inout) :: shown             !< the model of a drawing
+    type(picture_requests_type), intent(inout) :: drawings   !< get the poses
     type(point_type) :: point
     integer :: i, number, objective
 
     objective = 0
+    allocate (drawings%poses(0))
     do i = 1, min(most_targets, size(synthesis%targets))
       associate (target => synthesis%targets(i))
         number = merge(number + 1, 1, target%objective == objective)
@@ -192,6 +197,8 @@ contains
         point%link = 1
         point%position = target%place
         shown%mechanism%points = [shown%mechanism%points, point]
+        if (shown%request%objectives(objective)%kind == pose_objective) &
+          drawings%poses = [drawings%poses, pose_mark_type(target%link, number, target%place, target%turn)]
       end associate
     end do
   end subroutine add_targets

@@ -15,6 +15,7 @@ module crank_film
   use mech9_projection, only: projection_type, fit_projection
   use mech9_scene, only: scene_type
   use mech9_scene_making, only: make_scene
+  use mech9_pose_marks, only: pose_mark_type
   use mech9_small_models, only: slider_crank, eol
   use mech9_text_models, only: model_from_text
   use mech9_testing, only: tester_type
@@ -61,6 +62,6 @@ contains
     call place_slides(model%mechanism, film, skeleton)
     call choose_view(model%mechanism, film, skeleton, view, planar)
     call fit_projection(model%mechanism, film, skeleton, view, .false., reshape([real(wp) ::], [3, 0, 0]), projection)
-    call make_scene(model%mechanism, film, skeleton, projection, planar, .false., scene)
+    call make_scene(model%mechanism, film, skeleton, projection, planar, .false., [pose_mark_type ::], scene)
   end subroutine set_scene
 end module crank_film
