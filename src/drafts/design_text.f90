@@ -38,6 +38,7 @@ contains
     ! from the end on, so that places before it stay right
     do group = size(document%groups), 1, -1
       if (document%groups(group)%name == 'parameter') then
+        if (has_name(document%groups(group), 'formula')) cycle
         i = i - 1
         call set_number(document%groups(group), 'value', values(i), text)
       else if (document%groups(group)%name == 'coupling') then

@@ -21,7 +21,7 @@ module mech9_checked_mechanism
   use mech9_lookup, only: has_name, groups_named, get_integers, get_text
   use mech9_checker, only: check_document
   use mech9_parameter, only: parameter_type
-  use mech9_parameter_reader, only: read_parameters
+  use mech9_parameter_reader, only: read_parameters, groups_of_parameters
   use mech9_varied_document, only: varied_document_type, new_varied_document
   use mech9_diagnostics, only: diagnostics_type
   use mech9_findings, only: finding_type, fail_as
@@ -508,7 +508,7 @@ contains
     call check_document(checked, none_found)
   end subroutine check_again
 
-  !> List the names of the parameters, in the order of their groups.
+  !> List the names of the parameters without formulas, in the order of their groups.
   subroutine list_parameters(self, names)
     class(checked_mechanism_type), intent(in) :: self        !< the mechanism
     type(string_type), allocatable, intent(out) :: names(:)  !< (P) the names; empty where a group has none
@@ -517,7 +517,7 @@ contains
     integer :: i
 
     call check_again(self, checked)
-    groups = groups_named(checked, 'parameter')
+    groups = groups_of_parameters(checked)
     allocate (names(size(groups)))
     do i = 1, size(groups)
       names(i)%text = trim(get_text(checked%groups(groups(i)), 'name'))

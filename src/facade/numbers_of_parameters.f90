@@ -7,8 +7,9 @@ module mech9_numbers_of_parameters
   use mech9_named_number, only: number_place_type
   use mech9_lookup, only: has_name, groups_named
   use mech9_checker, only: check_document
-  use mech9_parameter, only: parameter_type
-  use mech9_parameter_reader, only: read_parameters
+  use mech9_parameter, only: parameter_type, parameter_target_type
+  use mech9_formula_parameters, only: formula_parameters_type
+  use mech9_parameter_reader, only: read_parameters, groups_of_parameters
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
@@ -22,28 +23,40 @@ contains
     type(source_type), intent(in) :: sources(:)            !< the texts that it comes from
     character(len=*), intent(in) :: name                   !< of the number
     type(number_place_type), intent(in) :: place           !< of the number
-    type(error_type), allocatable, intent(out) :: err      !< allocated if a parameter with a value sets it
+    type(error_type), allocatable, intent(out) :: err      !< allocated if a parameter with a value or a formula sets it
     type(document_type) :: placed
     type(parameter_type), allocatable :: parameters(:)
+    type(formula_parameters_type) :: formulas
     type(diagnostics_type) :: diagnostics
     integer, allocatable :: groups(:)
     integer :: i
 
     placed = document
     diagnostics%sources = sources
-    call read_parameters(placed, parameters, diagnostics)
-    groups = groups_named(placed, 'parameter')
+    call read_parameters(placed, parameters, diagnostics, formulas)
+    do i = 1, size(formulas%results)
+      if (.not. is_among(place, formulas%results(i)%targets)) cycle
+      call raise(err, exit_usage, 'the formula of parameter '''//formulas%results(i)%name//''' sets '//trim(name)// &
+                 '; set parameter('//to_text(formulas%results(i)%number)//').formula, or a parameter that it names')
+      return
+    end do
+    groups = groups_of_parameters(placed)
     do i = 1, size(parameters)
       if (.not. has_name(placed%groups(groups(i)), 'value')) cycle
-      associate (targets => parameters(i)%targets)
-        if (.not. any(targets%group_place == place%group .and. targets%item_place == place%item .and. &
-                      targets%position == place%value)) cycle
-      end associate
-      call raise(err, exit_usage, 'parameter '''//parameters(i)%name//''' sets '//trim(name)//'; set parameter('//to_text(i)// &
-                 ').value in its place')
+      if (.not. is_among(place, parameters(i)%targets)) cycle
+      call raise(err, exit_usage, 'parameter '''//parameters(i)%name//''' sets '//trim(name)//'; set parameter('// &
+                 to_text(count(groups_named(placed, 'parameter') <= groups(i)))//').value in its place')
       return
     end do
   end subroutine refuse_set_by_parameter
+
+  !> Whether a number is one of those that a parameter sets.
+  pure logical function is_among(place, targets)
+    type(number_place_type), intent(in) :: place             !< of the number
+    type(parameter_target_type), intent(in) :: targets(:)    !< numbers that the parameter sets
+
+    is_among = any(targets%group_place == place%group .and. targets%item_place == place%item .and. targets%position == place%value)
+  end function is_among
 
   !> Refuse a setting of a number that follows the value of a parameter.
   subroutine refuse_override(document, sources, err)
@@ -52,17 +65,26 @@ contains
     type(error_type), allocatable, intent(out) :: err      !< allocated if a parameter with a value sets the number
     type(document_type) :: placed
     type(parameter_type), allocatable :: parameters(:)
+    type(formula_parameters_type) :: formulas
     type(diagnostics_type) :: diagnostics
+    integer, allocatable :: groups(:)
     integer :: i
 
     placed = document
     diagnostics%sources = sources
     call check_document(placed, diagnostics)
-    call read_parameters(placed, parameters, diagnostics)
+    call read_parameters(placed, parameters, diagnostics, formulas)
     do i = 1, size(parameters)
       if (.not. parameters(i)%is_overruled) cycle
-      call raise(err, exit_usage, 'parameter '''//parameters(i)%name//''' sets this number; set parameter('//to_text(i)// &
-                 ').value in its place')
+      groups = groups_of_parameters(placed)
+      call raise(err, exit_usage, 'parameter '''//parameters(i)%name//''' sets this number; set parameter('// &
+                 to_text(count(groups_named(placed, 'parameter') <= groups(i)))//').value in its place')
+      return
+    end do
+    do i = 1, size(formulas%results)
+      if (.not. formulas%results(i)%is_overruled) cycle
+      call raise(err, exit_usage, 'the formula of parameter '''//formulas%results(i)%name//''' sets this number; set parameter('// &
+                 to_text(formulas%results(i)%number)//').formula, or a parameter that it names')
       return
     end do
   end subroutine refuse_override

@@ -14,6 +14,7 @@ module mech9_reader
   use mech9_item_units, only: units_of_document
   use mech9_lookup, only: groups_named, group_or_empty, has_group, has_name, get_integer, get_real, get_reals, get_text, span_of
   use mech9_parameter_reader, only: read_parameters
+  use mech9_formula_parameters, only: formula_parameters_type
   use mech9_structure_reader, only: read_structure
   use mech9_pair_reader, only: read_pairs
   use mech9_drive_reader, only: read_drives
@@ -70,12 +71,14 @@ contains
     type(model_type), intent(out) :: model                !< the mechanism, its problem, and the request for results
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(document_type) :: checked
+    type(formula_parameters_type) :: formulas
 
     model%program = program
     if (size(document%groups) == 0) return          ! the reason was reported when the file was read
     checked = document
     call check_document(checked, diagnostics)
-    call read_parameters(checked, model%parameters, diagnostics)
+    call read_parameters(checked, model%parameters, diagnostics, formulas)
+    model%formulas = formulas%results
     call read_checked(checked, model, diagnostics)
     if (.not. diagnostics%failed()) call hold_idle_rods(model)
     call read_study(checked, model%parameters, model%request%study, diagnostics)

@@ -11,6 +11,7 @@ module mech9_study_reader
   use mech9_table_file, only: beside
   use mech9_sobol, only: most_sobol_dimensions
   use mech9_parameter, only: parameter_type
+  use mech9_parameter_reader, only: groups_of_parameters
   use mech9_study, only: study_type
   implicit none
   private
@@ -90,7 +91,7 @@ contains
     integer(long) :: product
     integer :: i
 
-    numbers = groups_named(document, 'parameter')
+    numbers = groups_of_parameters(document)
     product = 1
     runs = 0
     do i = 1, size(parameters)
@@ -134,7 +135,7 @@ contains
     integer, allocatable :: numbers(:)
     integer :: i
 
-    numbers = groups_named(document, 'parameter')
+    numbers = groups_of_parameters(document)
     do i = 1, size(parameters)
       if (parameters(i)%spread > 0.0_wp .or. parameters(i)%has_range) cycle
       call diagnostics%add(document%groups(numbers(i))%span, 'parameter '''//parameters(i)%name//''' needs ''spread'', or '// &

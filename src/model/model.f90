@@ -6,7 +6,7 @@ module mech9_model
   use mech9_mechanism, only: mechanism_type
   use mech9_problem, only: problem_type
   use mech9_request, only: request_type
-  use mech9_parameter, only: parameter_type
+  use mech9_parameter, only: parameter_type, formula_result_type
   implicit none
   private
   public :: model_type
@@ -16,7 +16,8 @@ module mech9_model
     type(mechanism_type) :: mechanism
     type(problem_type) :: problem
     type(request_type) :: request
-    type(parameter_type), allocatable :: parameters(:)   !< in the order of the data file
+    type(parameter_type), allocatable :: parameters(:)   !< in the order of the data file, without those that are formulas
+    type(formula_result_type), allocatable :: formulas(:)   !< values that follow from those of the parameters
   contains
     procedure :: is_driven
   end type model_type

@@ -10,6 +10,7 @@ module mech9_variable_model
   type, abstract :: variable_model_type
   contains
     procedure(model_at), deferred :: at
+    procedure :: along => model_along
   end type variable_model_type
 
   abstract interface
@@ -22,4 +23,22 @@ module mech9_variable_model
       type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     end subroutine model_at
   end interface
+
+contains
+
+  !> The model where one parameter has a larger value, and formulas follow it along their tangents at the values. Its derivative by the
+  !> distance, at 0, is the total one. Without formulas it is the model at this value.
+  subroutine model_along(self, values, number, distance, model, err)
+    class(variable_model_type), intent(inout) :: self   !< the model as a function; it keeps these values
+    real(wp), intent(in) :: values(:)                   !< of all parameters, in their order, in the units of the data file
+    integer, intent(in) :: number                       !< of the parameter
+    real(wp), intent(in) :: distance                    !< by which its value is larger
+    type(model_type), intent(out) :: model              !< of use only where nothing failed
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    real(wp) :: shifted(size(values))
+
+    shifted = values
+    shifted(number) = values(number) + distance
+    call self%at(shifted, model, err)
+  end subroutine model_along
 end module mech9_variable_model

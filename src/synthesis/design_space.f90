@@ -109,6 +109,10 @@ contains
     allocate (space%is_constant(size(space%varied)), source=.false.)
     allocate (space%slopes(size(space%constants), size(space%varied)))
     do i = 1, size(x)
+      ! formulas may be affine in a part of the box alone
+      if (allocated(space%model%parameters(space%varied(i))%through)) then
+        if (size(space%model%parameters(space%varied(i))%through) > 0) return
+      end if
       x = space%values(space%varied)
       x(i) = space%high(i)
       call constants_at(space, x, above)

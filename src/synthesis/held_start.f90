@@ -19,6 +19,7 @@ module mech9_held_start
     class(variable_model_type), allocatable :: moving   !< the model that moves
   contains
     procedure :: at => held_model_at
+    procedure :: along => held_model_along
   end type held_start_type
 
 contains
@@ -33,6 +34,19 @@ contains
     call self%moving%at(values, model, err)
     if (.not. allocated(err)) call hold_start(model, err)
   end subroutine held_model_at
+
+  !> The held model where one parameter has a larger value, and formulas follow it along their tangents.
+  subroutine held_model_along(self, values, number, distance, model, err)
+    class(held_start_type), intent(inout) :: self       !< the model as a function; it keeps these values
+    real(wp), intent(in) :: values(:)                   !< of all parameters, in their order, in the units of the data file
+    integer, intent(in) :: number                       !< of the parameter
+    real(wp), intent(in) :: distance                    !< by which its value is larger
+    type(model_type), intent(out) :: model              !< of use only where nothing failed
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+
+    call self%moving%along(values, number, distance, model, err)
+    if (.not. allocated(err)) call hold_start(model, err)
+  end subroutine held_model_along
 
   !> Replace all drives of a model by ones that stand still at the start of the run, and hold its free coordinates there.
   subroutine hold_start(model, err)

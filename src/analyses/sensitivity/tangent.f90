@@ -96,6 +96,8 @@ contains
     if (.not. knows_derivatives(model, model%parameters(number))) then
       call raise(err, exit_data, failure_unknown_derivative)
     else
+      call try_formulas(variable, model, number, err)
+      if (allocated(err)) return
       call differentiate(variable, model, plan, number, change, round_off, err)
     end if
     if (allocated(err)) then
@@ -106,6 +108,18 @@ contains
     call read_change(model, plan, change, tangent)
     tangent%round_off = round_off
   end subroutine find_tangent
+
+  !> Fail where a formula in which a parameter has a part has no derivative, which then is the message.
+  subroutine try_formulas(variable, model, number, err)
+    class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
+    type(model_type), intent(in) :: model                   !< the present model
+    integer, intent(in) :: number                           !< of the parameter
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    type(model_type) :: unused
+
+    if (.not. allocated(model%parameters(number)%through)) return
+    if (size(model%parameters(number)%through) > 0) call variable%along(values_of(model), number, 0.0_wp, unused, err)
+  end subroutine try_formulas
 
   !> Whether the numbers that a parameter may set have known derivatives.
   pure logical function knows_derivatives(model, parameter) result(known)
@@ -129,7 +143,7 @@ contains
     end if
   end function knows_derivatives
 
-  !> Whether a parameter sets a number of any of these groups.
+  !> Whether a parameter sets a number of any of these groups, itself or by a formula in which it has a part.
   pure logical function sets_any(parameter, groups) result(sets)
     type(parameter_type), intent(in) :: parameter   !< the parameter
     character(len=9), intent(in) :: groups(:)       !< names of groups of the data file
@@ -138,6 +152,10 @@ contains
     sets = .false.
     do i = 1, size(parameter%targets)
       sets = sets .or. any(groups == parameter%targets(i)%group)
+    end do
+    if (.not. allocated(parameter%through)) return
+    do i = 1, size(parameter%through)
+      sets = sets .or. any(groups == parameter%through(i)%group)
     end do
   end function sets_any
 
@@ -246,30 +264,27 @@ contains
     real(wp), intent(out) :: difference(:)                  !< the difference
     logical, intent(out) :: exists                          !< there are models at both values
     real(wp), allocatable :: above(:), below(:)
-    real(wp) :: values(size(model%parameters))
 
-    values = values_of(model)
-    values(number) = model%parameters(number)%value + distance
-    call constants_at(variable, model, values, plan, above)
-    values(number) = model%parameters(number)%value - distance
+    call constants_at(variable, model, number, distance, plan, above)
     exists = size(above) == size(difference)
-    if (exists) call constants_at(variable, model, values, plan, below)
+    if (exists) call constants_at(variable, model, number, -distance, plan, below)
     if (exists) exists = size(below) == size(difference)
     difference = 0.0_wp
     if (exists) difference = above - below
   end subroutine find_difference
 
-  !> The constants at some values of the parameters; none where there is no such model, or other coordinates are independent there.
-  subroutine constants_at(variable, present, values, plan, constants)
+  !> The constants at another value of a parameter, along the tangents of formulas; none where there is no such model, or other coordinates are independent there.
+  subroutine constants_at(variable, present, number, distance, plan, constants)
     class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
     type(model_type), intent(in) :: present                 !< the present model
-    real(wp), intent(in) :: values(:)                       !< of all parameters
+    integer, intent(in) :: number                           !< of a parameter
+    real(wp), intent(in) :: distance                        !< of its value from the present one
     type(plan_type), intent(inout) :: plan                  !< scratch: the plan of the present model, with other numbers
     real(wp), allocatable, intent(out) :: constants(:)      !< the constants
     type(model_type) :: model
     type(error_type), allocatable :: err
 
-    call variable%at(values, model, err)
+    call variable%along(values_of(present), number, distance, model, err)
     if (.not. allocated(err)) then
       if (all(model%problem%partition%kind == present%problem%partition%kind)) then
         call align_axes(present, model)

@@ -9,9 +9,12 @@ module mech9_study_grammar
   type(item_row_type), parameter :: study_items(*) = [ &
     item_row_type('parameter', 'name', 'text', 1, 1, '', needed, '', '', '', '', &
                   'its name in results; letters, digits and _', '''crank'''), &
-    item_row_type('parameter', 'sets', 'text', 1, unlimited, '', needed, '', '', '', '', &
+    item_row_type('parameter', 'sets', 'text', 1, unlimited, '', optional, '(none)', '', '', '', &
                   'the numbers that it sets, named as in --set: number 1 of point in the second &pair, for instance', &
                   '''pair(2).point(1)'''), &
+    item_row_type('parameter', 'formula', 'text', 1, 1, '', optional, '(none)', '', '', '', &
+                  'its value from other parameters: + - * / ^, sqrt sin cos tan asin acos atan atan2 exp log abs min max, pi', &
+                  '''sqrt(a^2 + b^2)''', seldom=.true.), &
     item_row_type('parameter', 'factors', 'real', 1, unlimited, '', optional, '1', '', '', '', &
                   'each number is its factor times the value, plus its term: a factor for each number, or one for all', '1, 0.5', &
                   seldom=.true.), &
