@@ -98,6 +98,8 @@ contains
     call read_request(document, model%request, diagnostics)
     call read_structure(document, model%mechanism%structure, model%problem%partition, known, diagnostics)
     if (.not. known) call forget(model%mechanism%structure, model%problem%partition)
+    model%mechanism%names = document%names
+    if (known) call check_link_numbers(document, model%mechanism%structure%shown_links(), diagnostics)
     call read_parts(document, model%mechanism, model%problem, model%request, diagnostics)
     if (model%program == dynamics) then
       call read_motors(document, model%mechanism%pairs, model%mechanism%units, model%mechanism%motors, diagnostics)
@@ -108,6 +110,21 @@ contains
     if (model%program == dynamics) call check_motors(document, model, diagnostics)
     call check_sensitivities(document, size(model%parameters), diagnostics)
   end subroutine read_checked
+
+  !> Report names of links that do not exist.
+  pure subroutine check_link_numbers(document, n_links, diagnostics)
+    type(document_type), intent(in) :: document           !< checked
+    integer, intent(in) :: n_links                        !< number of links that the user knows
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+    integer, allocatable :: numbers(:)
+    integer :: i
+
+    numbers = groups_named(document, 'link')
+    do i = 1, size(numbers)
+      if (get_integer(document%groups(numbers(i)), 'number') <= n_links) cycle
+      call diagnostics%add(span_of(document%groups(numbers(i)), 'number', 1), 'there are '//to_text(n_links)//' links only')
+    end do
+  end subroutine check_link_numbers
 
   !> Set a structure and its partition to the form that means unknown: no links and no coordinates.
   pure subroutine forget(structure, partition)

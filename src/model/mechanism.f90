@@ -2,6 +2,7 @@
 module mech9_mechanism
   use mech9_kinds, only: wp
   use mech9_units, only: units_type
+  use mech9_part_names, only: part_names_type
   use mech9_structure, only: structure_type
   use mech9_pair, only: pair_slot_type
   use mech9_point, only: point_type
@@ -24,6 +25,7 @@ module mech9_mechanism
     !> Allowed residual of redundant equations, for dimensions of few digits: a part of the mechanism's size, and rad.
     real(wp) :: data_tolerance = 0.0_wp
     type(structure_type) :: structure
+    type(part_names_type) :: names                  !< of links and pairs, where the user gives any
     type(pair_slot_type), allocatable :: pairs(:)     !< pair k has coordinate k
     type(coupling_slot_type), allocatable :: couplings(:)   !< in the order of the data file; none where not allocated
     type(point_type), allocatable :: points(:)

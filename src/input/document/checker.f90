@@ -10,6 +10,7 @@ module mech9_checker
   use mech9_item_rows, only: find_item_rows, item_row_for_kind, takes_kind
   use mech9_document, only: document_type, group_type, item_type, value_type, value_bad, value_null, value_text, &
                             value_integer, add_item
+  use mech9_part_name_check, only: find_part_names, number_references
   use mech9_item_merge, only: merge_items, expand_repeats
   use mech9_item_check, only: check_item, known_word
   use mech9_item_units, only: scale_items
@@ -29,6 +30,10 @@ contains
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     integer :: i, found
 
+    found = diagnostics%count
+    call find_part_names(document, document%names, diagnostics)
+    diagnostics%names = document%names
+    call number_references(document, document%names, diagnostics%count == found, diagnostics)
     do i = 1, size(document%groups)
       associate (group => document%groups(i))
         group%row = find_group_row(group%name)

@@ -3,6 +3,7 @@ module mech9_data_help
   use mech9_program_kind, only: both_programs, program_names
   use mech9_error, only: error_type, raise, exit_usage
   use mech9_text, only: to_text, nearest_name
+  use mech9_grammar_rows, only: refers_to
   use mech9_grammar, only: group_table, item_table, item_row_type, group_row_type, unlimited, find_group_row, &
     rows_of_group, names_of_groups, names_in_group, for_forces
   use mech9_item_rows, only: find_item_rows
@@ -162,6 +163,7 @@ contains
       text = to_text(row%high)//' '//text//'s'
     end if
     if (row%range /= '') text = text//', '//trim(row%range)
+    if (refers_to(trim(row%group), trim(row%name)) > 0) text = text//', or '//trim(merge('names', 'name ', row%high > 1))
     if (row%words /= '') text = text//': '//word_list(trim(row%words))
   end function values_text
 

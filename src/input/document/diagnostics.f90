@@ -2,6 +2,7 @@
 module mech9_diagnostics
   use mech9_error, only: error_type, place_type, exit_done, exit_data, exit_structure, exit_file
   use mech9_text, only: to_text
+  use mech9_part_names, only: part_names_type, add_names
   use mech9_explanation, only: explain
   use mech9_source, only: source_type, span_type
   implicit none
@@ -22,6 +23,7 @@ module mech9_diagnostics
   type :: diagnostics_type
     !> The texts that spans point into; the first one is the data file.
     type(source_type), allocatable :: sources(:)
+    type(part_names_type) :: names    !< of links and pairs, which stand behind numbers in messages
     integer :: count = 0  !< errors found, also those that are no longer kept
     type(diagnostic_type), allocatable, private :: kept(:)
     integer, private :: kept_count = 0
@@ -216,6 +218,7 @@ contains
     type(span_type), intent(out) :: span                   !< place of the error; source 0: none
 
     message = self%kept(i)%message
+    call add_names(self%names, message)
     span = self%kept(i)%span
   end subroutine get
 
@@ -230,6 +233,7 @@ contains
 
     order = self%sorted()
     this = self%kept(order(i))
+    call add_names(self%names, this%message)
     if (this%span%source == 0) then
       text = this%message
       if (allocated(self%sources)) text = printable(self%sources(1)%name)//': '//text

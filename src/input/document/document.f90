@@ -3,6 +3,7 @@
 !> This module does not know the names of groups and items; mech9_checker checks them against the grammar.
 module mech9_document
   use mech9_kinds, only: wp, long
+  use mech9_part_names, only: part_names_type
   use mech9_source, only: source_type, span_type
   use mech9_registered_procedures, only: registered_procedures_type
   implicit none
@@ -56,6 +57,7 @@ module mech9_document
   type :: document_type
     type(source_type) :: source  !< the data file
     type(group_type), allocatable :: groups(:)
+    type(part_names_type) :: names        !< of links and pairs, once it is checked
     type(registered_procedures_type) :: procedures   !< for its groups of kind 'user', beside those that are linked
   end type document_type
 

@@ -23,6 +23,7 @@ module mech9_grammar
                    'which links meet, which coordinates are independent: first set (c, cq) or second (nrg, nws, rdw, nrw)'), &
     group_row_type('pair', .true., 'coordinate', both, &
                    'a joint of two links: its kind, its coordinate or coordinates, its point and axis'), &
+    group_row_type('link', .true., 'number', both, 'the name of a link, which may stand for its number'), &
     group_row_type('initial', .true., 'coordinate', both, &
                    'a coordinate at the start: a guess of a dependent one, the value of an independent one'), &
     group_row_type('coupling', .true., '', both, &
@@ -147,6 +148,8 @@ module mech9_grammar
                   'z axis of the joint''s frame, in the moving link', '0, 0, 1', seldom=.true.), &
     item_row_type('pair', 'moving_zero', 'real', 3, 3, '', optional, '(as zero)', '', '', 'spherical cylindrical planar free', &
                   'x axis of the joint''s frame, in the moving link', '1, 0, 0', seldom=.true.), &
+    item_row_type('pair', 'name', 'text', 1, 1, '', optional, '(none)', '', '', '', &
+                  'its name, which may stand for the number of its coordinate; letters, digits and _', '''B''', seldom=.true.), &
     item_row_type('pair', 'pitch', 'real', 1, 1, 'm', needed, '', '', '', 'helical', &
                   'advance per turn', '0.005'), &
     item_row_type('pair', 'dh', 'real', 4, 4, 'm, angle', optional, '(point, axis, ...)', '', '', screws, &
@@ -527,9 +530,15 @@ module mech9_grammar
     item_row_type('contact', 'exponent', 'real', 1, 1, '', optional, '1', '>=1', '', '', &
                   'of a compliant contact: power of the penetration; 1.5 for balls (Hertz)', '1.5', seldom=.true.)]
 
+  type(item_row_type), parameter :: link_items(*) = [ &
+    item_row_type('link', 'number', 'integer', 1, 1, '', needed, '', '>=1', '', '', &
+                  'number of the link', '2'), &
+    item_row_type('link', 'name', 'text', 1, 1, '', needed, '', '', '', '', &
+                  'its name; letters, digits and _', '''crank''')]
+
   type(item_row_type), parameter :: item_table(*) = &
-    [general_items, pair_items, coupling_items, motion_items, body_items, load_items, motor_items, stop_items, friction_items, &
-     contact_items, cam_items, study_items, run_items]
+    [general_items, pair_items, link_items, coupling_items, motion_items, body_items, load_items, motor_items, stop_items, &
+     friction_items, contact_items, cam_items, study_items, run_items]
 
 contains
 

@@ -4,6 +4,7 @@ module mech9_grammar_rows
   implicit none
   private
   public :: group_row_type, item_row_type, unlimited, for_forces, needed, optional
+  public :: refers_to, refers_to_link, refers_to_coordinate
 
   !> One kind of group.
   type :: group_row_type
@@ -39,4 +40,24 @@ module mech9_grammar_rows
   integer, parameter :: unlimited = huge(1)
   integer, parameter :: for_forces = 3
   logical, parameter :: needed = .true., optional = .false.
+
+  !> The numbers under a name are those of links, or of coordinates: names may stand in their places.
+  integer, parameter :: refers_to_link = 1, refers_to_coordinate = 2
+
+contains
+
+  !> Whether the whole numbers under a name are those of links (refers_to_link) or of coordinates (refers_to_coordinate); 0: neither.
+  pure integer function refers_to(group, name) result(kind)
+    character(len=*), intent(in) :: group   !< name of the group, in lower case
+    character(len=*), intent(in) :: name    !< name of the item, in lower case
+
+    kind = 0
+    if (group == 'mechanism' .or. group == 'link') return
+    select case (name)
+    case ('link', 'links', 'follower', 'nrg')
+      kind = refers_to_link
+    case ('coordinate', 'coordinates', 'guide', 'reaction_pairs', 'cq', 'nws')
+      if (group /= 'pair') kind = refers_to_coordinate
+    end select
+  end function refers_to
 end module mech9_grammar_rows

@@ -8,15 +8,18 @@ module mech9_named_number
   use mech9_document, only: document_type, group_type, item_type, subscript_type, value_type, value_real, value_integer, add_item
   use mech9_lookup, only: find_item, get_reals, row_of
   use mech9_scanner, only: scan_word, scan_subscripts, is_letter
+  use mech9_part_names, only: longest_part_name
+  use mech9_part_name_check, only: find_called, words_about_called
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
-  public :: takes_any, number_name_type, number_place_type, read_name, find_number, set_number
+  public :: takes_any, number_name_type, number_place_type, read_name, read_place, find_number, set_number
 
   !> The parts of a name.
   type :: number_name_type
     character(len=24) :: group = ''   !< in lower case
     integer :: number = 0             !< place among the groups of this name, from 1; 0: not given
+    character(len=longest_part_name) :: called = ''   !< name of the group in place of the number, as in pair(B)
     character(len=24) :: item = ''    !< in lower case
     integer :: position = 0           !< of the number under the item's name, from 1; 0: not given
   end type number_name_type
@@ -49,7 +52,7 @@ contains
     ok = is_letter(text, at)
     if (ok) call scan_word(text, at)
     if (ok) name%group = lower(text(first:at - 1))
-    if (ok) call read_position(text, at, name%number, ok)
+    if (ok) call read_place(text, at, name%number, name%called, ok)
     if (ok) ok = index(text(min(at, len(text) + 1):), '.') == 1
     at = at + 1
     first = at
@@ -59,6 +62,40 @@ contains
     if (ok) call read_position(text, at, name%position, ok)
     if (ok .and. at <= len(text)) ok = text(at:) == ''
   end subroutine read_name
+
+  !> Read the number or the name of a group in parentheses, if they stand here. A name may have quotes.
+  pure subroutine read_place(text, at, number, called, ok)
+    character(len=*), intent(in) :: text       !< the name as the user wrote it
+    integer, intent(inout) :: at               !< number of a byte: where to begin, then the first byte not taken
+    integer, intent(out) :: number             !< place among the groups of this name, from 1; 0: not given
+    character(len=*), intent(out) :: called    !< name of the group; blank where none is given
+    logical, intent(out) :: ok                 !< parentheses, if there are any, hold one of them
+    integer :: first, last, closing
+
+    number = 0
+    called = ''
+    ok = .true.
+    if (at > len(text)) return
+    if (text(at:at) /= '(') return
+    closing = index(text(at:), ')') + at - 1
+    first = at + 1
+    last = closing - 1
+    if (last - first >= 2) then
+      if (scan(text(first:first), '''"') == 1 .and. text(first:first) == text(last:last)) then
+        first = first + 1
+        last = last - 1
+      end if
+    end if
+    if (.not. (is_letter(text, first) .or. index(text(first:min(first, len(text))), '_') == 1)) then
+      call read_position(text, at, number, ok)
+      return
+    end if
+    at = first
+    call scan_word(text, at)
+    ok = at == last + 1 .and. closing > 0 .and. last - first < len(called)
+    if (ok) called = text(first:last)
+    at = closing + 1
+  end subroutine read_place
 
   !> Read a position in parentheses, if one stands here.
   pure subroutine read_position(text, at, position, ok)
@@ -168,6 +205,10 @@ contains
     character(len=14) :: position
     integer :: i, count
 
+    if (name%called /= '') then
+      call find_group_called(document, name, span, group, diagnostics)
+      return
+    end if
     count = 0
     group = 0
     do i = 1, size(document%groups)
@@ -189,6 +230,26 @@ contains
     end if
     name%number = max(name%number, 1)
   end subroutine find_group
+
+  !> Position of the group with a name, as in pair(B); 0, with a report, where there is none or several.
+  pure subroutine find_group_called(document, name, span, group, diagnostics)
+    type(document_type), intent(in) :: document           !< checked
+    type(number_name_type), intent(inout) :: name         !< parts of the name; gets the place of the group
+    type(span_type), intent(in) :: span                   !< its place
+    integer, intent(out) :: group                         !< position of the group in the document
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+    integer, allocatable :: found(:)
+    integer :: i
+
+    group = 0
+    call find_called(document, trim(name%group), trim(name%called), found)
+    if (size(found) /= 1) then
+      call diagnostics%add(span, trim(words_about_called(trim(name%group), trim(name%called), size(found))))
+      return
+    end if
+    group = found(1)
+    name%number = count([(document%groups(i)%name == name%group, i=1, group)])
+  end subroutine find_group_called
 
   !> Row of the grammar for a name in its group; 0, with a report, where it does not belong there or takes no real numbers.
   pure subroutine find_row(group, name, of_parameter, span, row, diagnostics)

@@ -1,0 +1,140 @@
+"""Names of links and pairs: a file with names gives the bits of the same file with numbers, --set finds groups by names, and wrong names are
+told with their place.
+"""
+import os
+
+import numpy as np
+import pytest
+
+from mech9_cases import run, table_of
+
+DONE, DATA, STRUCTURE = 0, 3, 4
+
+LINKS = {'2': 'crank', '3': 'coupler', '4': 'rocker', '1': 'base'}
+PAIRS = {'1': 'A', '2': 'B', '3': 'C', '4': 'D'}
+# <2> stands for link 2, [2] for pair 2
+TEXT = """&mechanism title='four-bar' /
+{names}&structure cq=[1] /
+&pair coordinate=1, {A}links=<1>,<2>, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, {B}links=<2>,<3>, kind='revolute', axis=0,0,1, point=0.3,0,0, moving_point=0,0,0 /
+&pair coordinate=3, {C}links=<3>,<4>, kind='revolute', axis=0,0,1, point=1,0,0, moving_point=0.8,0,0 /
+&pair coordinate=4, {D}links=<1>,<4>, kind='revolute', axis=0,0,1, point=0.9,0,0, moving_point=0,0,0 /
+&initial coordinate=[4], position=1.2 /
+&point name='P', link=<3>, position=0.5,0.1,0 /
+&body link=<3>, mass=2, centre=0.5,0,0, inertia=0,0,0.1,0,0,0 /
+&body link=<2>, mass=1, inertia=0,0,0.1,0,0,0 /
+&load kind='force', link=<3>, force=0,-3,0 /
+&load kind='spring', links=<1>,<3>, second_position=0.2,0,0, stiffness=2 /
+&load kind='coordinate', coordinate=[4], damping=0.3 /
+&stop coordinate=[4], low=-9, high=9 /
+&friction coordinate=[3], dynamic=0.1, radius=0.01 /
+{contact}&quantity name='swing', of='{of}', take='range' /
+&time end=0.2, intervals=8 /
+&output reactions=.true., coordinates=[1],[4], reaction_pairs=[2],[4] /
+"""
+DRIVE = "&drive coordinate=[1], kind='polynomial', coefficients=0.4, 10 /\n&cam link=<2>, follower=<3>, guide=[3] /\n"
+CONTACT = "&contact point='P', link=<1>, origin=0,-9,0, normal=0,1,0 /\n"
+START = '&initial coordinate=[1], position=0.4, velocity=3 /\n'
+
+
+def numbered(text, contact=''):
+    text = text.replace('{contact}', contact)
+    for number in LINKS:
+        text = text.replace(f'<{number}>', number).replace(f'[{number}]', number)
+    return text.format(names='', A='', B='', C='', D='', of='q4')
+
+
+def named(text, contact=''):
+    text = text.replace('{contact}', contact)
+    for number, name in LINKS.items():
+        text = text.replace(f'<{number}>', f"'{name}'")
+    for number, name in PAIRS.items():
+        text = text.replace(f'[{number}]', f"'{name}'")
+    links = ''.join(f"&link number={number}, name='{name}' /\n" for number, name in LINKS.items())
+    return text.format(names=links, of='D.q', **{name: f"name='{name}', " for name in PAIRS.values()})
+
+
+def write(folder, text, name='case.nml'):
+    path = os.path.join(folder, name)
+    with open(path, 'w', encoding='utf-8') as file:
+        file.write(text)
+    return path
+
+
+@pytest.mark.parametrize('motion', (DRIVE, START), ids=('driven', 'free'))
+def test_names_give_the_bits_of_numbers(checks, build, motion, tmp_path):
+    program = build.program('mech9k' if motion is DRIVE else 'mech9d')
+    text = TEXT + motion.replace('&cam', '!&cam')
+    without_friction = text.replace('&friction', '!&friction')
+    for given, contact in ((text, ''), (without_friction, CONTACT)):
+        tables = [table_of(program, write(tmp_path, form(given, contact), f'{form.__name__}.nml')) for form in (numbered, named)]
+        checks.true(list(tables[0]) == list(tables[1]), 'columns stay numbered')
+        checks.true(all(np.array_equal(tables[0][column], tables[1][column]) for column in tables[0]), 'names give the bits of numbers')
+    said = [run(program, os.path.join(tmp_path, f'{form.__name__}.nml'), '--table', os.devnull).stderr for form in (numbered, named)]
+    checks.true('swing' in said[0] and 'swing' in said[1], 'a quantity of a column by its name')
+
+
+def test_joints_have_names(checks, mech9d, tmp_path):
+    text = """&mechanism /
+&structure cq={cq} /
+&pair coordinates=1,2,3,{name} links=1,2, kind='spherical' /
+&pair coordinate=4, links=2,3, kind='revolute', axis=0,1,0, point=0.5,0,0 /
+&initial coordinate={first}, position=0.3, velocity=1 /
+&initial coordinate={third}, position=0.2 /
+&initial coordinate={second}, position=0.1 /
+&initial coordinate=4, position=0.1 /
+&body link=2, mass=1, centre=0.2,0,0, inertia=0.1,0.2,0.2,0,0,0 /
+&body link=3, mass=1, centre=0.2,0,0, inertia=0.1,0.2,0.2,0,0,0 /
+&gravity acceleration=0,0,-9.81 /
+&time end=0.1, intervals=5 /
+&quantity name='last', of='{of}', take='end' /
+"""
+    plain = table_of(mech9d, write(tmp_path, text.format(cq='1,2,3,4', name='', first=1, second=2, third=3, of='ddq2'), 'numbers.nml'))
+    path = write(tmp_path, text.format(cq="'J(1)','J(2)','J(3)',4", name=" name='J',", first="'J(1)'", second="'J(2)'", third="'J(3)'", of='J(2).ddq'))
+    by_names = table_of(mech9d, path)
+    checks.true(all(np.array_equal(plain[column], by_names[column]) for column in plain), 'coordinates of a joint by its name')
+    done = run(mech9d, path, '--set', 'initial(1).coordinate=J')
+    checks.true(done.returncode == DATA and "pair 'J' has 3 coordinates; write 'J(1)' for the first one" in done.stderr, f'a joint alone: {done.stderr}')
+
+
+def test_set_finds_groups_by_their_names(checks, mech9k, tmp_path):
+    path = write(tmp_path, named(TEXT + DRIVE).replace('&cam', '!&cam') + "&parameter name='rod', sets='pair(C).point(1)', value=1 /\n")
+    for by_name, by_number in (('pair(B).point(1)=0.35', 'pair(2).point(1)=0.35'), ("pair('B').point(1)=0.35", 'pair(2).point(1)=0.35'),
+                               ('body(coupler).mass=3', 'body(1).mass=3'), ('body(crank).mass=3', 'body(2).mass=3'),
+                               ('drive(A).coefficients(2)=12', 'drive.coefficients(2)=12'), ('initial(D).position=1.1', 'initial.position=1.1'),
+                               ('parameter(rod).value=1.1', 'parameter.value=1.1'), ('point(P).link=rocker', 'point.link=4'),
+                               ('output.coordinates=A,D', 'output.coordinates=1,4'), ('quantity(swing).of=D.dq', 'quantity.of=dq4')):
+        tables = [table_of(mech9k, path, '--set', setting) for setting in (by_name, by_number)]
+        checks.true(list(tables[0]) == list(tables[1]) and all(np.array_equal(tables[0][column], tables[1][column]) for column in tables[0]), by_name)
+    for setting, words in (('pair(E).point(1)=0.35', "there is no &pair of the name 'E'"), ('body(rocker).mass=3', "there is no &body of the name 'rocker'"),
+                           ('load(coupler).force=0,0,0', ''), ('link(crank).number=9', 'names link 9 (crank)'),
+                           ('pair(b).point(1)=0.35', "there is no &pair of the name 'b'")):
+        done = run(mech9k, path, '--set', setting, '--quiet')
+        checks.true(done.returncode == (DATA if words else DONE) and words in done.stderr, f'{setting}: {done.stderr}')
+
+
+@pytest.mark.parametrize('change, words, caret', (
+    (("link='coupler'", "link='couple'"), "there is no link with the name 'couple'; did you mean 'coupler'?", "'couple'"),
+    (("coordinate='D', position", "coordinate='d', position"), "there is no pair with the name 'd'", "'d'"),
+    (("name='coupler' /", "name='crank' /"), "a second link has the name 'crank'; the first stands in line 2", "'crank'"),
+    (("name='B'", "name='A'"), "a second pair has the name 'A'; the first stands in line 7", "'A'"),
+    (("name='B'", "name='2'"), 'the name of a pair is of letters (a to z), digits and _, at most 40 of them, and begins with no digit', "'2'"),
+    (("name='B'", "name='B.1'"), 'the name of a pair is of letters', "'B.1'"),
+    (("name='B'", "name=''"), 'the name of a pair is of letters', "''"),
+    (("name='B'", "name='" + 41 * 'x' + "'"), 'at most 40 of them', "'xxx"),
+    (("number=4, name='rocker'", "number=2, name='rocker'"), 'a second &link for number 2', '2'),
+    (("&link number=2, name", "&link number=5, name"), 'link 2 is not connected to link 1 (base)', '&structure'),
+    (("links='base','crank'", "links='base',crank"), "'links' takes whole numbers, and crank is none", 'crank'),
+    (("moving_point=0.8,0,0", "moving_point=9,0,0"), '', ''),
+))
+def test_wrong_names_are_told_with_their_place(checks, mech9k, tmp_path, change, words, caret):
+    text = named(TEXT + DRIVE).replace('&cam', '!&cam')
+    checks.true(change[0] in text, f'the change is one: {change[0]}')
+    done = run(mech9k, write(tmp_path, text.replace(*change, 1)), '--check')
+    if not caret:
+        checks.true(done.returncode != DONE and '(D)' in done.stderr, f'names in a message: {done.stderr}')
+        return
+    checks.true(done.returncode in (DATA, STRUCTURE) and words in done.stderr, f'{words}: {done.stderr}')
+    lines = done.stderr.splitlines()
+    at = next(i for i, line in enumerate(lines) if words in line)
+    checks.true(lines[at + 1][lines[at + 2].index('^'):].startswith(caret), f'the place of {words}: {done.stderr}')
