@@ -31,7 +31,7 @@ class Function:
                 self._mechanism.add('parameter', name=new, sets=name)
             self._names.append(name if name in known else new)
         self._columns = [self._mechanism.parameters.index(name) for name in self._names]
-        self._places = [f'parameter({column + 1}).value'.encode() for column in self._columns]
+        self._places = [f"parameter('{name}').value".encode() for name in self._names]
         self._numbers: list[int] = []
         self._analysis = lib.kinematics if self._mechanism.is_driven else lib.dynamics
         self._with_gradients = self._mechanism.copy()

@@ -224,14 +224,13 @@ class Mechanism:
             raise UsageError(f'a number has a name such as pair(2).point(1), and not {name!r}', 2)
         if '.' in name:
             return name
-        try:
-            return f'parameter({self.parameters.index(name) + 1}).value'
-        except ValueError:
-            raise DataError(f'there is no parameter {name!r}; a number has a name such as pair(2).point(1)', 3) from None
+        if name not in self.parameters:
+            raise DataError(f'there is no parameter {name!r}; a number has a name such as pair(2).point(1)', 3)
+        return f"parameter('{name}').value"
 
     @property
     def parameters(self) -> tuple[str, ...]:
-        """The names of the parameters."""
+        """The names of the parameters, without those that are formulas."""
         return tuple(lib.mechanism_parameter(self._handle, i).decode() for i in range(lib.mechanism_parameters(self._handle)))
 
     def copy(self) -> Mechanism:

@@ -4,6 +4,9 @@ module mech9_design_text
   use mech9_text, only: to_text
   use mech9_document, only: document_type, group_type
   use mech9_lookup, only: get_integer, has_name
+  use mech9_part_names, only: part_names_type
+  use mech9_part_name_check, only: find_part_names, number_references
+  use mech9_diagnostics, only: diagnostics_type
   use mech9_changed_text, only: set_number, full_number
   use mech9_coupling, only: coupling_type
   use mech9_linear_coupling, only: linear_coupling_type
@@ -26,12 +29,18 @@ contains
     real(wp), intent(in) :: q(:)                           !< (M) coordinates at the start [rad, m]
     character(len=*), intent(in) :: history                !< comments for its beginning, as whole lines
     character(len=:), allocatable, intent(out) :: text     !< of the design's data file
+    type(document_type) :: numbered
+    type(part_names_type) :: names
+    type(diagnostics_type) :: ignored
     logical :: given(size(q))
     integer :: i, k, c, group
 
     text = document%source%text
     if (text(len(text):) /= line_end) text = text//line_end
     given = model%problem%partition%independent()
+    numbered = document
+    call find_part_names(numbered, names)
+    call number_references(numbered, names, .false., ignored)
     i = size(values) + 1
     c = 1
     if (allocated(model%mechanism%couplings)) c = size(model%mechanism%couplings) + 1
@@ -45,7 +54,7 @@ contains
         c = c - 1
         call keep_phase(document%groups(group), model, model%mechanism%couplings(c)%coupling, text)
       else if (document%groups(group)%name == 'initial') then
-        k = get_integer(document%groups(group), 'coordinate')
+        k = get_integer(numbered%groups(group), 'coordinate')
         if (given(k)) cycle
         given(k) = .true.
         call set_number(document%groups(group), 'position', q(k)/unit_of(model%mechanism, k), text)

@@ -19,7 +19,7 @@ module mech9_checked_mechanism
   use mech9_setting, only: apply_setting
   use mech9_named_number, only: number_place_type, find_number, set_number
   use mech9_lookup, only: has_name, groups_named, get_integers, get_text
-  use mech9_checker, only: check_document
+  use mech9_checker, only: check_document, check_alone
   use mech9_parameter, only: parameter_type
   use mech9_parameter_reader, only: read_parameters, groups_of_parameters
   use mech9_varied_document, only: varied_document_type, new_varied_document
@@ -153,7 +153,7 @@ contains
       call read_groups(mechanism, dynamics, unused, diagnostics)
     else
       checked = mechanism%document
-      call check_document(checked, diagnostics)
+      call check_alone(checked, mechanism%document%groups, diagnostics)
     end if
     call fail_as(diagnostics, err, findings)
     mechanism%is_read = .not. allocated(err)
@@ -186,7 +186,7 @@ contains
     diagnostics%sources = self%sources
     call parse_document(source_from_text('added groups', text, is_file=.false.), added, diagnostics)
     checked = added
-    call check_document(checked, diagnostics)
+    call check_alone(checked, [self%document%groups, added%groups], diagnostics)
     call fail_as(diagnostics, err, findings)
     if (allocated(err)) return
     self%document%groups = [self%document%groups, added%groups]
@@ -364,7 +364,11 @@ contains
     document = self%document
     diagnostics%sources = self%sources
     call diagnostics%add_source(source_from_text('the name', name, is_file=.false.), source)
-    call check_document(document, diagnostics)
+    if (self%is_whole) then
+      call check_document(document, diagnostics)
+    else
+      call check_alone(document, self%document%groups, diagnostics)
+    end if
     call find_number(document, name, span_type(source, 1, max(1, len_trim(name))), alone, place, diagnostics, any_number=.true.)
     call fail_as(diagnostics, err)
   end subroutine find_named

@@ -10,6 +10,7 @@ module mech9_checker
   use mech9_item_rows, only: find_item_rows, item_row_for_kind, takes_kind
   use mech9_document, only: document_type, group_type, item_type, value_type, value_bad, value_null, value_text, &
                             value_integer, add_item
+  use mech9_part_names, only: part_names_type
   use mech9_part_name_check, only: find_part_names, number_references
   use mech9_item_merge, only: merge_items, expand_repeats
   use mech9_item_check, only: check_item, known_word
@@ -17,7 +18,7 @@ module mech9_checker
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
-  public :: check_document
+  public :: check_document, check_alone
 
   integer, parameter :: kind_length = 36  !< length of the longest kind of a group with its law
 
@@ -53,6 +54,21 @@ contains
     end do
     call scale_items(document)
   end subroutine check_document
+
+  !> Hold groups against the grammar that need not make sense together yet. Names of links and pairs may come with other groups, or
+  !> later.
+  pure subroutine check_alone(document, groups, diagnostics)
+    type(document_type), intent(inout) :: document           !< the groups, which are checked
+    type(group_type), intent(in) :: groups(:)                !< all groups so far, with names
+    type(diagnostics_type), intent(inout) :: diagnostics     !< gets the errors
+    type(document_type) :: whole
+    type(part_names_type) :: names
+
+    whole%groups = groups
+    call find_part_names(whole, names)
+    call number_references(document, names, .false., diagnostics)
+    call check_document(document, diagnostics)
+  end subroutine check_alone
 
   !> Tell that --set adds a group that has errors, beside those of the file: its number may be a mistake.
   pure subroutine explain_added(document, number, diagnostics)

@@ -6,7 +6,7 @@ module mech9_grammar
   use mech9_program_kind, only: kinematics, dynamics, both => both_programs
   use mech9_text, only: lower
   use mech9_grammar_rows, only: group_row_type, item_row_type, unlimited, for_forces, needed, optional
-  use mech9_study_grammar, only: study_items
+  use mech9_study_grammar, only: study_items, link_items
   implicit none
   private
   public :: group_row_type, item_row_type, group_table, item_table, unlimited, for_forces
@@ -529,12 +529,6 @@ module mech9_grammar
                   'of a compliant contact: force per rate of the penetration, at a penetration of 1 m', '200', seldom=.true.), &
     item_row_type('contact', 'exponent', 'real', 1, 1, '', optional, '1', '>=1', '', '', &
                   'of a compliant contact: power of the penetration; 1.5 for balls (Hertz)', '1.5', seldom=.true.)]
-
-  type(item_row_type), parameter :: link_items(*) = [ &
-    item_row_type('link', 'number', 'integer', 1, 1, '', needed, '', '>=1', '', '', &
-                  'number of the link', '2'), &
-    item_row_type('link', 'name', 'text', 1, 1, '', needed, '', '', '', '', &
-                  'its name; letters, digits and _', '''crank''')]
 
   type(item_row_type), parameter :: item_table(*) = &
     [general_items, pair_items, link_items, coupling_items, motion_items, body_items, load_items, motor_items, stop_items, &

@@ -33,6 +33,7 @@ module mech9_named_number
     type(number_name_type) :: name    !< parts of its name, complete
   end type number_place_type
 
+  character(len=*), parameter :: digits = '0123456789'
   real(wp), parameter :: most_whole = 2.0_wp**53   !< whole numbers beyond it have neighbours that are not whole
   !> Groups whose numbers describe studies, not a mechanism and its motion.
   character(len=9), parameter :: closed_groups(6) = [character(len=9) :: 'parameter', 'quantity', 'study', 'objective', &
@@ -78,6 +79,10 @@ contains
     if (at > len(text)) return
     if (text(at:at) /= '(') return
     closing = index(text(at:), ')') + at - 1
+    if (closing <= at + 1) then
+      call read_position(text, at, number, ok)
+      return
+    end if
     first = at + 1
     last = closing - 1
     if (last - first >= 2) then
@@ -86,13 +91,13 @@ contains
         last = last - 1
       end if
     end if
-    if (.not. (is_letter(text, first) .or. index(text(first:min(first, len(text))), '_') == 1)) then
+    if (verify(text(first:last), digits//' :,') == 0) then
       call read_position(text, at, number, ok)
       return
     end if
     at = first
     call scan_word(text, at)
-    ok = at == last + 1 .and. closing > 0 .and. last - first < len(called)
+    ok = at == last + 1 .and. last - first < len(called)
     if (ok) called = text(first:last)
     at = closing + 1
   end subroutine read_place

@@ -20,7 +20,7 @@ module mech9_setting
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
-  public :: apply_setting
+  public :: apply_setting, has_formula, is_formula, element_end
 
 contains
 

@@ -1,10 +1,16 @@
-!> The names of the groups for parameters, quantities, studies and objectives.
+!> The names of the groups for parameters, quantities, studies and objectives, and for the names of links.
 module mech9_study_grammar
   use mech9_program_kind, only: kinematics
   use mech9_grammar_rows, only: item_row_type, unlimited, needed, optional
   implicit none
   private
-  public :: study_items
+  public :: study_items, link_items
+
+  type(item_row_type), parameter :: link_items(*) = [ &
+    item_row_type('link', 'number', 'integer', 1, 1, '', needed, '', '>=1', '', '', &
+                  'number of the link', '2'), &
+    item_row_type('link', 'name', 'text', 1, 1, '', needed, '', '', '', '', &
+                  'its name; letters, digits and _', '''crank''')]
 
   type(item_row_type), parameter :: study_items(*) = [ &
     item_row_type('parameter', 'name', 'text', 1, 1, '', needed, '', '', '', '', &
