@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from ._mechanism import Mechanism
     from ._pictures import Picture
 
+# ends of columns by the names of pairs, and the beginnings of the same columns by numbers
+COLUMNS_OF_COORDINATES = {'q': 'q', 'dq': 'dq', 'ddq': 'ddq', 'drive': 'F'}
 # the marks of events in plots: of more than this number there are short ticks in place of lines
 MOST_LINES = 40
 EVENT_STYLES: dict[str, dict[str, Any]] = {
@@ -166,9 +168,23 @@ class Results(Mapping[str, np.ndarray]):
     def __getitem__(self, name: str) -> np.ndarray:
         """A column (rows,), read-only; it shares the memory of the table."""
         try:
-            return self.table[:, self._columns[name]]
+            return self.table[:, self._columns[name if name in self._columns else self._numbered(name)]]
         except KeyError:
             raise KeyError(f'there is no column {name!r}; the columns are {", ".join(self.names)}') from None
+
+    def _numbered(self, name: str) -> str:
+        """The name of a column by numbers, where it has that of a pair or a link: B.q is q2, B.fx is R2.fx, rod.phi is L3.phi."""
+        part, _, end = name.partition('.')
+        report = self.report
+        pairs, links = report.get('coordinate_names', []), report.get('link_names', [])
+        pair = next((i for i, given in enumerate(pairs, 1) if given and given in (part, f'{part}(1)')), 0)
+        if part and part in pairs and end in COLUMNS_OF_COORDINATES:
+            return f'{COLUMNS_OF_COORDINATES[end]}{pairs.index(part) + 1}'
+        if pair and f'R{pair}.{end}' in self._columns:
+            return f'R{pair}.{end}'
+        if part and part in links and f'L{links.index(part) + 1}.{end}' in self._columns:
+            return f'L{links.index(part) + 1}.{end}'
+        return name
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.names)

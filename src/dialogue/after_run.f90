@@ -10,6 +10,7 @@ module mech9_after_run
   use mech9_rows_text, only: rows_text, all_rows_text, columns_that_fit, all_digits
   use mech9_run_comparison, only: comparison_type, compare_runs, comparison_text
   use mech9_plot, only: plot_columns
+  use mech9_part_names, only: number_columns
   use mech9_heading, only: new_heading
   use mech9_plot_request, only: is_picture
   use mech9_grammar, only: words_of
@@ -232,6 +233,7 @@ contains
 
     if (.not. has_rows(conversation, kept)) return
     request = what
+    call number_columns(kept%parts, request)
     do i = 1, len(request)
       if (request(i:i) == ' ') request(i:i) = ','
     end do
@@ -283,11 +285,14 @@ contains
   pure logical function is_column(kept, name)
     type(kept_rows_type), intent(in) :: kept  !< results of the last run
     character(len=*), intent(in) :: name      !< name that is looked for
+    character(len=:), allocatable :: numbered
     integer :: i
 
     is_column = .true.
+    numbered = name
+    call number_columns(kept%parts, numbered)
     do i = 1, size(kept%names)
-      if (kept%names(i)%text == name) return
+      if (kept%names(i)%text == numbered) return
     end do
     is_column = .false.
   end function is_column

@@ -2,6 +2,7 @@
 module mech9_kept_rows
   use mech9_kinds, only: wp, long
   use mech9_text, only: string_type, nearest_name
+  use mech9_part_names, only: part_names_type, number_columns
   use mech9_motion_event, only: motion_events_type
   implicit none
   private
@@ -14,6 +15,7 @@ module mech9_kept_rows
     character(len=:), allocatable :: title
     type(string_type), allocatable :: names(:), units(:)  !< headings and units of the columns, time first
     real(wp), allocatable :: rows(:, :)                   !< rows(:, i): row i; `count` of them are filled
+    type(part_names_type) :: parts                        !< names of links and pairs, which may stand in those of columns
     type(motion_events_type) :: events                    !< those of the run
     integer :: count = 0                                  !< how many rows are kept
     integer :: stride = 1                                 !< one row of so many is kept
@@ -66,10 +68,13 @@ contains
     integer, intent(out) :: number                       !< number of the column; 0: there is none
     character(len=:), allocatable, intent(out) :: meant  !< the nearest heading; empty where none is near
     character(len=len(name) + 8) :: known(size(self%names))
+    character(len=:), allocatable :: numbered
 
     meant = ''
+    numbered = name
+    call number_columns(self%parts, numbered)
     do number = 1, size(self%names)
-      if (self%names(number)%text == name) return
+      if (self%names(number)%text == numbered) return
       known(number) = self%names(number)%text
     end do
     number = 0

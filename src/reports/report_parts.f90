@@ -8,6 +8,7 @@ module mech9_report_parts
   use mech9_diagnostics, only: diagnostics_type
   use mech9_structural_vectors, only: structural_vectors_type
   use mech9_joint_expansion, only: shown_vectors
+  use mech9_part_names, only: name_in
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_version, only: version, revision, compiler
@@ -109,6 +110,8 @@ contains
     call add_integers(json, 'nws', vectors%nws)
     call add_integers(json, 'rdw', vectors%rdw)
     call add_integers(json, 'nrw', vectors%nrw)
+    call add_names(json, 'link_names', model%mechanism%names%links, model%mechanism%structure%shown_links())
+    call add_names(json, 'coordinate_names', model%mechanism%names%coordinates, plan%n_coordinates)
     call json%begin_array('blocks')
     do b = 1, size(plan%blocks)
       associate (block => plan%blocks(b))
@@ -122,6 +125,22 @@ contains
     end do
     call json%end_array()
   end subroutine add_structure
+
+  !> Add the names of links or coordinates in the order of their numbers, empty for those without one. There is no list where none has any.
+  subroutine add_names(json, name, list, number)
+    type(json_type), intent(inout) :: json                    !< the report, which is being composed
+    character(len=*), intent(in) :: name                      !< of the list in the report
+    character(len=*), allocatable, intent(in) :: list(:)      !< names by numbers
+    integer, intent(in) :: number                             !< of links or coordinates
+    integer :: i
+
+    if (.not. allocated(list)) return
+    call json%begin_array(name)
+    do i = 1, number
+      call json%add(trim(name_in(list, i)))
+    end do
+    call json%end_array()
+  end subroutine add_names
 
   !> Add the components of the recorded wrenches that equilibrium determines: [{"pair": 1, "unique": ["fx", ...]}, ...]
   subroutine add_uniqueness(json, recorded, unique)

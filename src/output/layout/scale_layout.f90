@@ -4,6 +4,7 @@
 !> nowhere else.
 module mech9_scale_layout
   use mech9_text, only: string_type
+  use mech9_part_names, only: name_in
   use mech9_mechanism, only: mechanism_type
   use mech9_result_units, only: force_unit_name
   use mech9_poses, only: poses_type
@@ -125,6 +126,12 @@ contains
     call store%attach_scales('coordinate_unit', ['/coordinate'])
     call store%put('coordinate_kind', kinds, 'kind of each pair')
     call store%attach_scales('coordinate_kind', ['/coordinate'])
+    if (.not. allocated(mechanism%names%coordinates)) return
+    do i = 1, size(kinds)
+      kinds(i)%text = trim(name_in(mechanism%names%coordinates, columns%coordinates(i)))
+    end do
+    call store%put('coordinate_name', kinds, 'name of each pair; empty where it has none')
+    call store%attach_scales('coordinate_name', ['/coordinate'])
   end subroutine put_coordinate_scales
 
   !> Write the names and links of the points, and the axes.

@@ -1,6 +1,7 @@
 !> The structure of a mechanism as data sets.
 module mech9_structure_layout
   use mech9_text, only: string_type
+  use mech9_part_names, only: part_names_type, name_in
   use mech9_structural_vectors, only: structural_vectors_type
   use mech9_joint_expansion, only: shown_vectors
   use mech9_model, only: model_type
@@ -51,7 +52,7 @@ contains
       call store%attach_scales('structure/links', ['/coordinate   ', '/structure/end'])
       call store%put('structure/independent', merge(1, 0, independent), '1 where the coordinate is independent')
       call store%attach_scales('structure/independent', ['/coordinate'])
-      call write_matrix(store, structure%shown_links(), links, structure%stands_alone())
+      call write_matrix(store, structure%shown_links(), links, structure%stands_alone(), model%mechanism%names)
       call store%put('structure/position', [(k, k=1, size(vectors%nrg))], 'position in the structural vectors')
       call store%make_scale('structure/position')
       call write_vector(store, 'nrg', vectors%nrg, 'links in the order of the chains')
@@ -72,11 +73,13 @@ contains
   end subroutine write_vector
 
   !> Write the coincidence matrix, unless it is very large or two pairs join the same two links, which it cannot show.
-  subroutine write_matrix(store, n_links, links, in_matrix)
+  subroutine write_matrix(store, n_links, links, in_matrix, names)
     class(data_set_store_type), intent(inout) :: store   !< the open storage
     integer, intent(in) :: n_links                !< number of links
     integer, intent(in) :: links(:, :)            !< (2,M) reference and moving link of each pair
     logical, intent(in) :: in_matrix(:)           !< (M) the coordinate stands in the matrix
+    type(part_names_type), intent(in) :: names    !< of links
+    type(string_type) :: texts(n_links)
     integer, allocatable :: c(:, :)
     integer :: k
 
@@ -94,5 +97,11 @@ contains
     call store%make_scale('structure/other_link')
     call store%put('structure/c', c, 'coincidence matrix: the coordinate of the pair that joins two links, or 0')
     call store%attach_scales('structure/c', ['/structure/link      ', '/structure/other_link'])
+    if (.not. allocated(names%links)) return
+    do k = 1, n_links
+      texts(k)%text = trim(name_in(names%links, k))
+    end do
+    call store%put('structure/link_name', texts, 'name of the link; empty where it has none')
+    call store%attach_scales('structure/link_name', ['/structure/link'])
   end subroutine write_matrix
 end module mech9_structure_layout

@@ -3,7 +3,7 @@
 module mech9_plot
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_text, only: to_text
+  use mech9_text, only: to_text, string_type
   use mech9_path, only: folder_of, name_of, ending_of, with_ending
   use mech9_heading, only: heading_type
   use mech9_result_sink, only: result_sink_type
@@ -35,6 +35,7 @@ module mech9_plot
     procedure :: write_rows
     procedure :: close => close_plot
     procedure :: mark
+    procedure :: call_columns
     procedure :: words
   end type plot_type
 
@@ -60,6 +61,14 @@ contains
     self%data = new_plot_data(heading%names, heading%units, self%request%curves, expected)
     self%is_open = .true.
   end subroutine open_plot
+
+  !> Call the columns by other names in the plot than in its request.
+  subroutine call_columns(self, names)
+    class(plot_type), intent(inout) :: self            !< open
+    type(string_type), intent(in) :: names(:)          !< of all columns of the results
+
+    self%data%names = names
+  end subroutine call_columns
 
   !> Keep the values of the next rows of results.
   subroutine write_rows(self, rows, err)

@@ -8,7 +8,7 @@ module mech9_structure_graph
   use mech9_text, only: string_type, to_text
   use mech9_path, only: ending_of, with_ending
   use mech9_compound_joint, only: compound_joint_type
-  use mech9_structure, only: structure_type
+  use mech9_part_names, only: part_names_type, name_in
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type
   use mech9_block_names, only: chain_names
@@ -104,9 +104,9 @@ contains
     text = text//'  fontname="sans-serif"; ranksep=0.6; nodesep=0.5;'//line_end// &
            '  node [fontname="sans-serif", shape=circle, style=filled, fillcolor=white, width=0.5, fixedsize=true];'// &
            line_end//'  edge [fontname="sans-serif", fontsize=11];'//line_end// &
-           '  1 [shape=box, width=0.9, fillcolor="#d8d8d8", penwidth=2, label="1 frame"];'//line_end
+           '  1 [shape=box, width=0.9, fillcolor="#d8d8d8", penwidth=2, label="1 '//frame_name(mechanism%names)//'"];'//line_end
     do b = 1, size(plan%blocks)
-      text = text//cluster(mechanism%structure, plan, b)
+      text = text//cluster(mechanism, plan, b)
     end do
     do b = 1, size(plan%blocks)
       text = text//edges(mechanism, plan, b)
@@ -147,8 +147,8 @@ contains
   end function shown_link
 
   !> The links that a block reaches first.
-  pure function cluster(structure, plan, b) result(text)
-    type(structure_type), intent(in) :: structure  !< links and joints
+  pure function cluster(mechanism, plan, b) result(text)
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(plan_type), intent(in) :: plan            !< the plan of the mechanism
     integer, intent(in) :: b                       !< number of the block
     character(len=:), allocatable :: text
@@ -158,11 +158,42 @@ contains
            '    label='//quoted('block '//to_text(b)//': '//words_of(plan, plan%blocks(b)))//'; labelloc=b; fontsize=11; '// &
            'style=rounded; color="'//colour(b)//'"; fontcolor="'//colour(b)//'";'//line_end
     do s = plan%blocks(b)%first_step, plan%blocks(b)%last_step
-      if (plan%frame_of(plan%steps(s)%link) == s .and. structure%joint_of_link(plan%steps(s)%link) == 0) &
-        text = text//'    '//to_text(plan%steps(s)%link)//' [color="'//colour(b)//'"];'//line_end
+      if (plan%frame_of(plan%steps(s)%link) == s .and. mechanism%structure%joint_of_link(plan%steps(s)%link) == 0) &
+        text = text//'    '//to_text(plan%steps(s)%link)//' [color="'//colour(b)//'"'// &
+               label_of_link(mechanism%names, plan%steps(s)%link)//'];'//line_end
     end do
     text = text//'  }'//line_end
   end function cluster
+
+  !> The name of link 1: frame, unless the user gives it another one.
+  pure function frame_name(names) result(text)
+    type(part_names_type), intent(in) :: names   !< of links and pairs
+    character(len=:), allocatable :: text
+
+    text = 'frame'
+    if (name_in(names%links, 1) /= '') text = trim(name_in(names%links, 1))
+  end function frame_name
+
+  !> The label of a node for a link that has a name: its number, and the name below; a link without one keeps its number alone.
+  pure function label_of_link(names, link) result(text)
+    type(part_names_type), intent(in) :: names   !< of links and pairs
+    integer, intent(in) :: link                  !< number of the link
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (name_in(names%links, link) /= '') &
+      text = ', shape=ellipse, fixedsize=false, label="'//to_text(link)//'\n'//trim(name_in(names%links, link))//'"'
+  end function label_of_link
+
+  !> The name of a coordinate behind its number; empty where there is none.
+  pure function name_behind(names, coordinate) result(text)
+    type(part_names_type), intent(in) :: names   !< of links and pairs
+    integer, intent(in) :: coordinate            !< its number
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (name_in(names%coordinates, coordinate) /= '') text = ' '//trim(name_in(names%coordinates, coordinate))
+  end function name_behind
 
   !> The chains that a block closes, and the coordinates for which it solves them.
   pure function words_of(plan, block) result(words)
@@ -197,7 +228,7 @@ contains
         end if
         from = sum(mechanism%structure%links(:, k)) - step%link
         text = text//'  '//to_text(from)//' -- '//to_text(step%link)//' [color="'//colour(b)//'", label="   q'// &
-               to_text(k)//' '//trim(mechanism%pairs(k)%pair%kind_name())//'\l'
+               to_text(k)//name_behind(mechanism%names, k)//' '//trim(mechanism%pairs(k)%pair%kind_name())//'\l'
         if (.not. step%dependent) text = text//'   independent\l", penwidth="4'
         text = text//'"];'//line_end
       end associate

@@ -3,6 +3,7 @@
 module mech9_scene_labels
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
+  use mech9_part_names, only: part_names_type, name_in, label_of, longest_called
   use mech9_mechanism, only: mechanism_type
   use mech9_film, only: film_type
   use mech9_projection, only: projection_type
@@ -67,21 +68,21 @@ contains
       do i = 1, size(symbols%joint)
         if (symbols%joint(i) /= i) cycle
         n = n + 1
-        call enter_coordinates(i, film%independent, symbols, scene, drawing, projection, entries(n))
+        call enter_coordinates(i, mechanism%names, film%independent, symbols, scene, drawing, projection, entries(n))
       end do
     end if
     if (size(shapes, 2) <= most_labelled) then
       do i = 2, size(shapes, 2)
         if (all(shapes(:, i) == 0)) cycle
         n = n + 1
-        call enter_number(i, shapes(:, i), film, scene, drawing, projection, entries(n))
+        call enter_number(i, mechanism%names, shapes(:, i), film, scene, drawing, projection, entries(n))
       end do
     end if
     labels = entries(:n)%label
     call place_labels(obstacles, [projection%width, projection%height], labels)
     do i = 1, n
       entries(i)%label = labels(i)
-      call add_entry(entries(i), film, drawing, projection, scene)
+      call add_entry(entries(i), mechanism%names, film, drawing, projection, scene)
     end do
   end subroutine add_labels
 
@@ -105,8 +106,9 @@ contains
   end subroutine enter_name
 
   !> Form the label with the names of the coordinates of a joint, in a row or one below the other.
-  subroutine enter_coordinates(joint, independent, symbols, scene, drawing, projection, entry)
+  subroutine enter_coordinates(joint, names, independent, symbols, scene, drawing, projection, entry)
     integer, intent(in) :: joint                     !< number of the first pair of the joint
+    type(part_names_type), intent(in) :: names       !< of pairs, which stand for those of coordinates
     logical, intent(in) :: independent(:)            !< (M) which coordinates are independent
     type(symbols_type), intent(in) :: symbols        !< nodes and joints of the pairs
     type(scene_type), intent(in) :: scene            !< nodes and items of the picture
@@ -123,7 +125,7 @@ contains
       if (symbols%joint(k) /= joint) cycle
       n = n + 1
       entry%pairs(n) = k
-      widths(n) = width_of(k, independent)
+      widths(n) = width_of(coordinate_label(names, k), independent(k))
     end do
     entry%n_pairs = n
     entry%style = as_coordinate
@@ -142,8 +144,9 @@ contains
 
   !> Form the label with the number of a link: on its bars or its plate, beside them, or with a leading line. The number
   !> of a link that is drawn at one place only stands beside this place.
-  subroutine enter_number(link, shape, film, scene, drawing, projection, entry)
+  subroutine enter_number(link, names, shape, film, scene, drawing, projection, entry)
     integer, intent(in) :: link                      !< number of the link
+    type(part_names_type), intent(in) :: names       !< of links, which stand for their numbers
     integer, intent(in) :: shape(2)                  !< number of the item that shows the link, and of a node of the link; 0: none
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
     type(scene_type), intent(in) :: scene            !< nodes and items of the picture
@@ -155,7 +158,7 @@ contains
 
     entry%style = as_number
     entry%link = link
-    entry%text = to_text(link)
+    entry%text = trim(label_of(names%links, link))
     size_of_box = [number_letter*len(entry%text), number_height]
     entry%label%owner = link
     entry%label%of_place = .false.
@@ -270,8 +273,9 @@ contains
   end function spot_at
 
   !> Add a label at its chosen spot, with its leading line.
-  subroutine add_entry(entry, film, drawing, projection, scene)
+  subroutine add_entry(entry, names, film, drawing, projection, scene)
     type(entry_type), intent(in) :: entry            !< text and node of the label, with its chosen spot
+    type(part_names_type), intent(in) :: names       !< of pairs, which stand for those of coordinates
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
     type(drawing_type), intent(in) :: drawing        !< places of the nodes on the page
     type(projection_type), intent(in) :: projection  !< from space to the page
@@ -295,19 +299,20 @@ contains
       case (as_number)
         call scene%add_label(as_number, node, entry%text, 0.5_wp*(spot%low + spot%high) - at, entry%link)
       case default
-        call add_coordinates(entry, node, spot, chosen >= entry%first_stacked, at, film%independent, scene)
+        call add_coordinates(entry, node, spot, chosen >= entry%first_stacked, at, names, film%independent, scene)
       end select
     end associate
   end subroutine add_entry
 
   !> Add the names of coordinates within their common box, each as a separate label, since only independent coordinates
   !> have a colour.
-  subroutine add_coordinates(entry, node, spot, stacked, at, independent, scene)
+  subroutine add_coordinates(entry, node, spot, stacked, at, names, independent, scene)
     type(entry_type), intent(in) :: entry     !< text and node of the label
     integer, intent(in) :: node               !< number of the node at the joint
     type(spot_type), intent(in) :: spot       !< box and leading line of the label
     logical, intent(in) :: stacked            !< the names stand one below the other
     real(wp), intent(in) :: at(2)             !< place of the joint on the page [px]
+    type(part_names_type), intent(in) :: names   !< of pairs, which stand for those of coordinates
     logical, intent(in) :: independent(:)     !< (M) which coordinates are independent
     type(scene_type), intent(inout) :: scene  !< nodes and items of the picture
     real(wp) :: last(2)
@@ -318,8 +323,9 @@ contains
     if (stacked) last = [spot%high(1), spot%low(2) + coordinate_height - below]
     do i = 1, entry%n_pairs
       k = entry%pairs(i)
-      if (.not. stacked) last(1) = last(1) + width_of(k, independent)
-      call scene%add_label(merge(as_input, as_coordinate, independent(k)), node, 'q'//to_text(k), last - at)
+      if (.not. stacked) last(1) = last(1) + width_of(coordinate_label(names, k), independent(k))
+      call scene%add_label(merge(as_input, as_coordinate, independent(k)), node, trim(coordinate_label(names, k)), &
+                           last - at)
       if (stacked) then
         last(2) = last(2) + coordinate_height
       else
@@ -328,11 +334,20 @@ contains
     end do
   end subroutine add_coordinates
 
-  !> The width of a coordinate's name [px].
-  pure real(wp) function width_of(k, independent)
-    integer, intent(in) :: k               !< number of the coordinate
-    logical, intent(in) :: independent(:)  !< (M) which coordinates are independent
+  !> The label of a coordinate: the name of its pair, or q with its number.
+  pure character(len=longest_called) function coordinate_label(names, k) result(label)
+    type(part_names_type), intent(in) :: names   !< of pairs
+    integer, intent(in) :: k                     !< number of the coordinate
 
-    width_of = merge(input_letter, coordinate_letter, independent(k))*(1 + len(to_text(k)))
+    label = name_in(names%coordinates, k)
+    if (label == '') label = 'q'//to_text(k)
+  end function coordinate_label
+
+  !> The width of the label of a coordinate [px].
+  pure real(wp) function width_of(label, is_independent)
+    character(len=*), intent(in) :: label      !< the label
+    logical, intent(in) :: is_independent      !< the coordinate is independent
+
+    width_of = merge(input_letter, coordinate_letter, is_independent)*len_trim(label)
   end function width_of
 end module mech9_scene_labels

@@ -56,6 +56,8 @@ module mech9_options
                 'write the results as an HDF5 file'), &
     option_type('plot', needed_argument, '[TARGET:]NAMES', any_text, .true., both, &
                 'plot columns, as in q3,P.x or P.x:P.y; TARGET is a picture or term'), &
+    option_type('names', no_argument, '', any_text, .false., both, &
+                'call columns of the table and of plots by names of pairs: B.q'), &
     option_type('sketch', needed_argument, 'FILE.svg', any_text, .false., both, &
                 'draw the mechanism at the start, or where it rests'), &
     option_type('animate', needed_argument, 'FILE', any_text, .true., both, &

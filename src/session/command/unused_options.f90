@@ -8,7 +8,7 @@ module mech9_unused_options
   public :: print_unused_options
 
   !> Options that have an effect only on a run, and those that need more of the mechanism than its structure.
-  character(len=*), parameter :: of_runs(*) = [character(len=8) :: 'table', 'hdf5', 'plot', 'no-write']
+  character(len=*), parameter :: of_runs(*) = [character(len=8) :: 'table', 'hdf5', 'plot', 'names', 'no-write']
   character(len=*), parameter :: of_mechanisms(*) = [character(len=8) :: 'check', 'plan', 'branches', 'range', 'cam', 'graph', &
                                                        'sketch']
 

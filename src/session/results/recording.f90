@@ -53,6 +53,7 @@ contains
     if (present(kept)) &
       call kept%begin(model%mechanism%title, source%columns%names(:source%columns%count), &
                       source%columns%units(:source%columns%count), model%request%time%intervals + 1)
+    if (present(kept)) kept%parts = model%mechanism%names
     clock = seconds()
     call progress%start(program_names(model%program), quiet)
     call pacer%start(longest_wait)

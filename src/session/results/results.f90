@@ -6,7 +6,8 @@ module mech9_results
   use mech9_model, only: model_type
   use mech9_columns, only: columns_type
   use mech9_result_sink, only: result_sink_type, sink_slot_type, append_sink
-  use mech9_heading, only: heading_of
+  use mech9_heading, only: heading_type, heading_of
+  use mech9_part_names, only: number_columns
   use mech9_table, only: table_type
   use mech9_motion_event, only: motion_events_type
   use mech9_plot, only: plot_type, picture_of_plot
@@ -63,7 +64,7 @@ contains
     self%hdf5_path = paths%hdf5
     ! a wrong name in a plot is found before a file is touched
     call self%open_plots(options, model, columns, plots, err)
-    if (.not. allocated(err) .and. self%table_path /= '') call self%open_table(model, columns, err)
+    if (.not. allocated(err) .and. self%table_path /= '') call self%open_table(options, model, columns, err)
     if (.not. allocated(err) .and. self%hdf5_path /= '') &
       call self%open_hdf5(options, model, data_text, columns, err)
     if (allocated(err)) then
@@ -86,16 +87,21 @@ contains
     type(string_type), allocatable :: requests(:)
     type(plot_type), allocatable :: plot
     character(len=:), allocatable :: picture
+    type(heading_type) :: heading
     class(result_sink_type), allocatable :: sink
     integer :: i
 
     allocate (plots(0))
     call options%arguments('plot', requests)
+    heading = heading_of(model%mechanism%title, columns)
+    if (options%has('names')) call heading%call_by_names(model%mechanism%names)
     do i = 1, size(requests)
       call picture_of_plot(requests(i)%text, self%table_path, options%file, i, picture)
       allocate (plot)
+      call number_columns(model%mechanism%names, requests(i)%text)
       call plot%open(requests(i)%text, heading_of(model%mechanism%title, columns), model%request%time%intervals + 1, picture, &
                      self%table_path, err)
+      if (.not. allocated(err)) call plot%call_columns(heading%names)
       if (allocated(err)) then
         if (leaves_out(model)) err%message = err%message//' (&output coordinates, derivatives or energies leave some out)'
         return
@@ -114,18 +120,22 @@ contains
     end associate
   end function leaves_out
 
-  subroutine open_table(self, model, columns, err)
+  subroutine open_table(self, options, model, columns, err)
     class(results_type), intent(inout) :: self          !< the results
+    type(command_line_type), intent(in) :: options      !< the command line
     type(model_type), intent(in) :: model               !< the model
     type(columns_type), intent(in) :: columns           !< names and units of the columns
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(table_type), allocatable :: table
     class(result_sink_type), allocatable :: sink
+    type(heading_type) :: heading
     integer, allocatable :: order(:)
 
     allocate (table)
+    heading = heading_of(model%mechanism%title, columns)
+    if (options%has('names')) call heading%call_by_names(model%mechanism%names)
     if (columns%sensitivities > 0) order = columns%order_in_table()
-    call table%open(self%table_path, heading_of(model%mechanism%title, columns), name_and_version(model%program), err, order)
+    call table%open(self%table_path, heading, name_and_version(model%program), err, order)
     if (allocated(err)) return
     call move_alloc(table, sink)
     call append_sink(self%sinks, sink)

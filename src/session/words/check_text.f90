@@ -1,6 +1,7 @@
 !> The text of a check behind the mobility: what the data file gives, and the assembled start.
 module mech9_check_text
   use mech9_model, only: model_type
+  use mech9_part_names, only: name_in
   use mech9_result_units, only: unit_of
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -48,14 +49,23 @@ contains
     write (unit, '(a)') 'assembled at the start:'
     do k = 1, size(model%mechanism%pairs)
       write (name, '(a,i0)') 'q', k
-      write (unit, '(2x,a8,es24.16)') name, &
-        start%q(k)/unit_of(model%mechanism, k)
+      write (unit, '(2x,a8,es24.16,a)') name, start%q(k)/unit_of(model%mechanism, k), &
+        behind(name_in(model%mechanism%names%coordinates, k))
     end do
     call print_stops(unit, model%mechanism, start)
     call print_frictions(unit, model%mechanism)
     call print_contacts(unit, model%mechanism, plan, start)
     call print_forces(unit, model, plan, start)
   end subroutine print_start
+
+  !> A name behind a number; empty where there is none.
+  pure function behind(name) result(text)
+    character(len=*), intent(in) :: name     !< of a coordinate; blank: none
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (name /= '') text = '  '//trim(name)
+  end function behind
 
   !> Print what is known about the forces that the model requests.
   subroutine print_forces(unit, model, plan, start)

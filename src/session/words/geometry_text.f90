@@ -4,6 +4,7 @@ module mech9_geometry_text
   use mech9_text, only: to_text
   use mech9_counted, only: counted
   use mech9_pair, only: pair_guide_type
+  use mech9_part_names, only: part_names_type, name_in, label_of
   use mech9_mechanism, only: mechanism_type
   use mech9_result_units, only: length_text
   use mech9_link_dimensions, only: link_dimension_type, link_dimensions
@@ -45,12 +46,28 @@ contains
         given = [d%has_distance, d%has_angle, d%has_points]
         shown = [d%distance/length, d%angle/mechanism%units%angle, d%between_points/length]
         where (abs(shown) <= round_off*[largest/length, 1.0_wp/mechanism%units%angle, largest/length]) shown = 0.0_wp
-        write (unit, '(2x,i6,2x,a12,3a16)') d%link, left(to_text(d%pairs(1))//' and '//to_text(d%pairs(2))), &
-          right(shown(1), given(1)), right(shown(2), given(2)), right(shown(3), given(3))
+        write (unit, '(2x,i6,2x,a12,2a16,a)') d%link, left(to_text(d%pairs(1))//' and '//to_text(d%pairs(2))), &
+          right(shown(1), given(1)), right(shown(2), given(2)), right(shown(3), given(3))//names_of(mechanism%names, d)
       end associate
     end do
     if (size(dimensions) > most_lines) write (unit, '(a)') '  and '//counted(size(dimensions) - most_lines, 'more line')
   end subroutine print_dimensions
+
+  !> The names of a link and its two pairs, behind their dimensions; empty where none has any.
+  pure function names_of(names, dimension) result(text)
+    type(part_names_type), intent(in) :: names             !< of links and pairs
+    type(link_dimension_type), intent(in) :: dimension     !< of the link
+    character(len=:), allocatable :: text
+    integer :: i
+
+    text = ''
+    associate (pairs => dimension%pairs)
+      if (name_in(names%links, dimension%link) == '' .and. &
+          all([(name_in(names%coordinates, pairs(i)) == '', i=1, size(pairs))])) return
+      text = '  '//trim(label_of(names%links, dimension%link))//': '//trim(label_of(names%coordinates, pairs(1)))//' and '// &
+             trim(label_of(names%coordinates, pairs(2)))
+    end associate
+  end function names_of
 
   !> Write the length of each curve along which a pair leads its moving link.
   subroutine print_curves(unit, mechanism)

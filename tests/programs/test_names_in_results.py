@@ -1,0 +1,85 @@
+"""Names of links and pairs in what the programs write: columns by --names, plots, --check, drawings, graphs, reports, conversations."""
+import json
+import os
+
+import numpy as np
+
+from mech9_cases import read_table, run, text_of
+
+DONE, USAGE = 0, 2
+
+FOUR_BAR = """&mechanism title='four-bar' /
+&link number=2, name='crank' /
+&link number=4, name='rocker' /
+&structure cq='A' /
+&pair coordinate=1, name='A', links=1,'crank', kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links='crank',3, kind='revolute', axis=0,0,1, point=0.3,0,0, moving_point=0,0,0 /
+&pair coordinate=3, name='C', links=3,'rocker', kind='revolute', axis=0,0,1, point=1,0,0, moving_point=0.8,0,0 /
+&pair coordinate=4, name='D', links=1,'rocker', kind='revolute', axis=0,0,1, point=0.9,0,0, moving_point=0,0,0 /
+&initial coordinate='D', position=1.2 /
+&point name='P', link=3, position=0.5,0.1,0 /
+&drive coordinate='A', kind='polynomial', coefficients=0.4, 10 /
+&body link='rocker', mass=2, centre=0.4,0,0, inertia=0,0,0.1,0,0,0 /
+&time end=0.2, intervals=8 /
+&parameter name='length', sets='pair(C).point(1)' /
+&output reactions=.true., drive_forces=.true., sensitivities=.true. /
+"""
+
+
+def write(folder, text=FOUR_BAR):
+    path = os.path.join(folder, 'case.nml')
+    with open(path, 'w', encoding='utf-8') as file:
+        file.write(text)
+    return path
+
+
+def test_columns_by_names(checks, build, tmp_path):
+    path = write(tmp_path)
+    for name in ('mech9k', 'mech9d'):
+        tables = [read_table(run(build.program(name), path, '--quiet', *options).stdout) for options in ((), ('--names',))]
+        by = {'q1': 'A.q', 'dq3': 'C.dq', 'ddq4': 'D.ddq', 'q2': 'q2', 'P.x': 'P.x', 'F1': 'A.drive', 'R4.fx': 'D.fx', 'R2.mz': 'R2.mz',
+              'd(q4)/d(length)': 'd(D.q)/d(length)', 'd(R3.fy)/d(length)': 'd(C.fy)/d(length)', 't': 't'}
+        checks.true(len(tables[0]) == len(tables[1]), f'{name}: as many columns')
+        for number, named in by.items():
+            checks.true(named in tables[1] and np.array_equal(tables[0][number], tables[1][named]), f'{name}: {number} is {named}')
+        checks.true([column for column in tables[1] if column.startswith(('q1', 'dq3', 'R4'))] == [], f'{name}: no such number is left')
+
+
+def test_plots_by_names(checks, mech9k, tmp_path):
+    path = write(tmp_path)
+    for options, labels in ((('--plot', 'plot.svg:A.q:D.q,D.dq'), ('q1', 'q4', 'dq4')), (('--names', '--plot', 'plot.svg:q1:q4,D.dq'), ('A.q', 'D.q', 'D.dq'))):
+        done = run(mech9k, path, '--table', 'case.dat', *options, folder=tmp_path)
+        checks.true(done.returncode == DONE, f'{options}: {done.stderr[:300]}')
+        script = text_of(os.path.join(tmp_path, 'plot.gp'))
+        checks.true(all(label in script for label in labels), f'{options}: labels {labels}')
+    done = run(mech9k, path, '--plot', 'E.q', '--quiet', folder=tmp_path)
+    checks.true(done.returncode == USAGE, 'a name that no pair has is no column')
+
+
+def test_check_tells_names(checks, mech9k, tmp_path):
+    said = run(mech9k, write(tmp_path), '--check').stdout.splitlines()
+    checks.true(any(line.split()[:4] == ['2', '1', 'and', '2'] and line.endswith('  crank: A and 2') for line in said), 'dimensions of the crank')
+    checks.true(any(line.startswith('  q4') and line.endswith('  D') for line in said), 'coordinates at the start')
+    plain = FOUR_BAR
+    for name, number in (('crank', 2), ('rocker', 4), ('A', 1), ('D', 4)):
+        plain = plain.replace(f"name='{name}', links", 'links').replace(f"'{name}'", str(number))
+    plain = '\n'.join(line for line in plain.replace("name='C', ", '').replace('pair(C)', 'pair(3)').splitlines() if not line.startswith('&link')) + '\n'
+    unnamed = run(mech9k, write(tmp_path, plain), '--check')
+    checks.true(unnamed.returncode == DONE and not any(line != line.rstrip() for line in unnamed.stdout.splitlines()), f'without names: {unnamed.stderr}')
+
+
+def test_drawings_and_graphs_show_names(checks, mech9k, tmp_path):
+    path = write(tmp_path)
+    checks.true(run(mech9k, path, '--check', '--sketch', 'case.svg', folder=tmp_path).returncode == DONE, 'a sketch is drawn')
+    picture = text_of(os.path.join(tmp_path, 'case.svg'))
+    checks.true(all(f'>{label}<' in picture for label in ('A', 'C', 'D', 'crank', 'rocker', 'P')), 'names stand in the sketch')
+    checks.true('>3<' in picture and '>4<' not in picture, 'numbers stand where there is no name')
+    checks.true(run(mech9k, path, '--graph', 'case.dot', folder=tmp_path).returncode == DONE, 'a graph is drawn')
+    graph = text_of(os.path.join(tmp_path, 'case.dot'))
+    checks.true(all(label in graph for label in ('q1 A revolute', 'q4 D revolute', r'2\ncrank', r'4\nrocker', '1 frame')), f'names stand in the graph: {graph}')
+
+
+def test_reports_have_names(checks, mech9k, tmp_path):
+    run(mech9k, write(tmp_path), '--table', 'case.dat', '--report', 'case.json', folder=tmp_path)
+    report = json.loads(text_of(os.path.join(tmp_path, 'case.json')))
+    checks.true(report['link_names'] == ['', 'crank', '', 'rocker'] and report['coordinate_names'] == ['A', '', 'C', 'D'], 'names by numbers')
