@@ -19,6 +19,12 @@ module mech9_robot_draft
   integer, parameter :: longest_name = 40
   character(len=*), parameter :: name_letters = 'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_'
 
+  !> The names that groups of one kind have so far.
+  type :: used_names_type
+    type(name_table_type) :: taken     !< the names
+    type(name_table_type) :: tails     !< by names, the last number that stands behind one
+  end type used_names_type
+
 contains
 
   !> The draft. Each independent coordinate gets a drive that holds it, or initial values.
@@ -30,9 +36,10 @@ contains
     logical, intent(in) :: with_drives         !< write drives in place of initial values
     type(draft_type), intent(out) :: draft     !< the data file
     type(draft_group_type), allocatable :: groups(:)
+    type(used_names_type) :: names
     integer :: n, k
 
-    allocate (draft%groups(4 + 5*size(q) + robot%n_points + 2*size(robot%links)))
+    allocate (draft%groups(4 + 5*size(q) + robot%n_points + 3*size(robot%links)))
     draft%head = ''
     n = 0
     call begin_group(draft, n, 'mechanism', '')
@@ -41,8 +48,9 @@ contains
     call add(draft%groups(n), 'coordinates', to_text(size(q)))
     call begin_group(draft, n, 'structure', '')
     call add(draft%groups(n), 'cq', to_text(pack([(k, k=1, size(q))], independent), ', '))
+    call add_link_names(robot, series, draft, n)
     do k = 1, size(q)
-      call add_pair(robot, series, k, draft, n)
+      call add_pair(robot, series, k, names, draft, n)
     end do
     do k = 1, size(q)
       call add_coupling(robot, series, k, draft, n)
@@ -102,15 +110,17 @@ contains
 
   !> Add the group of a pair, by its first coordinate. Directions of the moving link are given where they differ from those of the
   !> reference link.
-  subroutine add_pair(robot, series, k, draft, n)
+  subroutine add_pair(robot, series, k, names, draft, n)
     type(robot_type), intent(in) :: robot     !< the robot
     type(series_type), intent(in) :: series   !< its pairs
     integer, intent(in) :: k                  !< number of the coordinate
+    type(used_names_type), intent(inout) :: names   !< of pairs so far
     type(draft_type), intent(inout) :: draft  !< the data file
     integer, intent(inout) :: n               !< number of its groups
     character(len=*), parameter :: kinds(8) = [character(len=11) :: 'revolute', 'prismatic', 'helical', 'cylindrical', &
                                                'universal', 'spherical', 'planar', 'free']
     real(wp) :: axis(3), zero(3), axes(3, 2), zeros(3, 2)
+    character(len=:), allocatable :: name
     logical :: differ
     integer :: i
 
@@ -140,6 +150,10 @@ contains
       end if
       call add(draft%groups(n), 'links', to_text(pair%links, ', '))
       call add(draft%groups(n), 'kind', "'"//trim(kinds(pair%kind))//"'")
+      if (joint%name /= '') then
+        call find_free_name(joint%name, 'pair', names, name)
+        call add(draft%groups(n), 'name', "'"//name//"'")
+      end if
       if (pair%kind == helical_joint) call add(draft%groups(n), 'pitch', number_text(joint%pitch))
       call add(draft%groups(n), 'point', numbers_text(pair%frames(1)%p))
       call add(draft%groups(n), 'axis', numbers_text(axes(:, 1)))
@@ -194,7 +208,7 @@ contains
     type(series_type), intent(in) :: series   !< its pairs
     type(draft_type), intent(inout) :: draft  !< the data file
     integer, intent(inout) :: n               !< number of its groups
-    type(name_table_type) :: taken, tails
+    type(used_names_type) :: names
     logical :: bears(size(robot%links))
     integer :: i
 
@@ -202,47 +216,77 @@ contains
     do i = 1, robot%n_points
       bears(robot%points(i)%link) = .true.
       if (robot%points(i)%link > 1) &
-        call add_point(robot%points(i)%name, series%number_of(robot%points(i)%link), robot%points(i)%position, taken, tails, &
+        call add_point(robot%points(i)%name, series%number_of(robot%points(i)%link), robot%points(i)%position, names, &
                        draft, n)
     end do
     do i = 2, size(robot%links)
       if (bears(i)) cycle
       if (count(series%pairs%freedoms > 0 .and. (series%pairs%links(1) == series%number_of(i) .or. &
                                                  series%pairs%links(2) == series%number_of(i))) > 1) cycle
-      call add_point(robot%links(i)%name, series%number_of(i), [0.0_wp, 0.0_wp, 0.0_wp], taken, tails, draft, n)
+      call add_point(robot%links(i)%name, series%number_of(i), [0.0_wp, 0.0_wp, 0.0_wp], names, draft, n)
     end do
   end subroutine add_points
 
   !> Add the group of a point, whose name is made of letters that names may have, and different from those before.
-  subroutine add_point(name, link, position, taken, tails, draft, n)
+  subroutine add_point(name, link, position, names, draft, n)
     character(len=*), intent(in) :: name      !< name in the robot
     integer, intent(in) :: link               !< number of the link
     real(wp), intent(in) :: position(3)       !< in the frame of the link [m]
-    type(name_table_type), intent(inout) :: taken   !< names of points so far
-    type(name_table_type), intent(inout) :: tails   !< by names, the last number that stands behind one
+    type(used_names_type), intent(inout) :: names   !< of points so far
     type(draft_type), intent(inout) :: draft  !< the data file
     integer, intent(inout) :: n               !< number of its groups
-    character(len=:), allocatable :: plain, free
+    character(len=:), allocatable :: free
+
+    call find_free_name(name, 'point', names, free)
+    call begin_group(draft, n, 'point', '')
+    call add(draft%groups(n), 'name', "'"//free//"'")
+    call add(draft%groups(n), 'link', to_text(link))
+    call add(draft%groups(n), 'position', numbers_text(position))
+  end subroutine add_point
+
+  !> Add the groups with the names of links.
+  subroutine add_link_names(robot, series, draft, n)
+    type(robot_type), intent(in) :: robot     !< the robot
+    type(series_type), intent(in) :: series   !< its pairs
+    type(draft_type), intent(inout) :: draft  !< the data file
+    integer, intent(inout) :: n               !< number of its groups
+    type(used_names_type) :: names
+    character(len=:), allocatable :: name
+    integer :: i
+
+    do i = 1, size(robot%links)
+      if (robot%links(i)%name == '') cycle
+      call find_free_name(robot%links(i)%name, 'link', names, name)
+      call begin_group(draft, n, 'link', '')
+      call add(draft%groups(n), 'number', to_text(series%number_of(i)))
+      call add(draft%groups(n), 'name', "'"//name//"'")
+    end do
+  end subroutine add_link_names
+
+  !> Form a name of letters that names may have, which begins with no digit and is different from those before.
+  subroutine find_free_name(name, default, names, free)
+    character(len=*), intent(in) :: name                    !< name in the robot
+    character(len=*), intent(in) :: default                 !< for a name without letters
+    type(used_names_type), intent(inout) :: names           !< so far; gets this one
+    character(len=:), allocatable, intent(out) :: free      !< the name
+    character(len=:), allocatable :: plain
     integer :: i, tail
 
     plain = name(:min(len(name), longest_name - 6))
     do i = 1, len(plain)
       if (index(name_letters, plain(i:i)) == 0) plain(i:i) = '_'
     end do
-    if (plain == '') plain = 'point'
+    if (plain == '') plain = default
+    if (default /= 'point' .and. scan(plain(1:1), '0123456789') == 1) plain = '_'//plain
     free = plain
-    tail = max(1, tails%find(plain))
-    do while (taken%find(free) > 0)
+    tail = max(1, names%tails%find(plain))
+    do while (names%taken%find(free) > 0)
       tail = tail + 1
       free = plain//'_'//to_text(tail)
     end do
-    call taken%add(free, 1)
-    call tails%set(plain, tail)
-    call begin_group(draft, n, 'point', '')
-    call add(draft%groups(n), 'name', "'"//free//"'")
-    call add(draft%groups(n), 'link', to_text(link))
-    call add(draft%groups(n), 'position', numbers_text(position))
-  end subroutine add_point
+    call names%taken%add(free, 1)
+    call names%tails%set(plain, tail)
+  end subroutine find_free_name
 
   !> Add the groups of bodies, but for the frame, whose mass has no effect.
   subroutine add_bodies(robot, series, draft, n)
