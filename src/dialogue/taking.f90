@@ -1,7 +1,9 @@
 !> Check answers to questions as the reader of data files does, and note them.
 module mech9_taking
+  use mech9_kinds, only: wp, radians_per_degree
   use mech9_text, only: to_text, lower, nearest_name
-  use mech9_grammar, only: group_table, item_table, words_of
+  use mech9_grammar, only: group_table, item_table, item_row_type, words_of
+  use mech9_grammar_rows, only: refers_to, refers_to_link
   use mech9_diagnostics, only: printable
   use mech9_answer, only: read_answer, yes_or_no
   use mech9_short_answers, only: word_meant
@@ -9,6 +11,7 @@ module mech9_taking
   use mech9_draft_check, only: problem_with, problem_with_joint
   use mech9_draft_joints, only: give_joints
   use mech9_outline, only: ways, drop_empty_guesses
+  use mech9_question_words, only: angle_unit
   use mech9_interview, only: most_parts
   use mech9_seldom, only: seldom_rows
   use mech9_topics, only: topics
@@ -60,7 +63,8 @@ contains
       call conversation%keep()
       return
     end if
-    call read_answer(item_table(question%row), line_meant(conversation, question, line), text, problem)
+    call read_answer(item_table(question%row), line_meant(conversation, question, line), text, problem, &
+                     merge(radians_per_degree, 1.0_wp, angle_unit(conversation%interview%draft) == 'deg'))
     if (problem == '') call hold_against_rest(conversation, question, text, problem)
     if (problem == '') call count_independent(conversation, text, problem)
     if (problem == '') then
@@ -77,13 +81,58 @@ contains
     character(len=*), intent(in) :: line                   !< the answer, without blanks around it
     character(len=:), allocatable :: text
 
-    text = line
+    text = numbers_meant(conversation%interview%draft, item_table(question%row), line)
     if (group_table(question%group_row)%name /= 'pair') return
     associate (interview => conversation%interview)
       if (is_placed(interview%draft, interview%outline, question%place, trim(item_table(question%row)%name))) &
         text = point_in_plane(line)
     end associate
   end function line_meant
+
+  !> A line in which names of links and pairs that stand for numbers become these numbers.
+  pure function numbers_meant(draft, row, line) result(text)
+    type(draft_type), intent(in) :: draft        !< the data file so far
+    type(item_row_type), intent(in) :: row       !< of the name that is asked for
+    character(len=*), intent(in) :: line         !< the answer, without blanks around it
+    character(len=:), allocatable :: text, word
+    integer :: first, last, kind
+
+    text = line
+    kind = refers_to(trim(row%group), trim(row%name))
+    if (kind == 0) return
+    text = ''
+    last = 0
+    do while (last < len(line))
+      first = last + 1
+      last = first + scan(line(first:)//',', ' ,') - 2
+      word = number_called(draft, kind, line(first:last))
+      text = text//word
+      last = last + 1
+      if (last <= len(line)) text = text//line(last:last)
+    end do
+  end function numbers_meant
+
+  !> The number of the link or the coordinate that a word names, with quotes or without; the word itself where it names none.
+  pure function number_called(draft, kind, word) result(number)
+    type(draft_type), intent(in) :: draft        !< the data file so far
+    integer, intent(in) :: kind                  !< refers_to_link or refers_to_coordinate
+    character(len=*), intent(in) :: word         !< a word of an answer
+    character(len=:), allocatable :: number, group, key, given
+    integer :: i
+
+    number = word
+    if (len(word) == 0) return
+    group = 'pair'
+    key = 'coordinate'
+    if (kind == refers_to_link) group = 'link'
+    if (kind == refers_to_link) key = 'number'
+    do i = 1, draft%count_of(group)
+      given = draft%value(group, i, 'name')
+      if (len(given) < 3) cycle
+      if (word /= given .and. word /= given(2:len(given) - 1)) cycle
+      if (draft%has(group, i, key)) number = draft%value(group, i, key)
+    end do
+  end function number_called
 
   !> Check the number of coordinates that an answer makes independent. Refuse an answer that the structure hardly allows
   !> once, and accept it if it is given again.

@@ -3,7 +3,7 @@ module mech9_draft_source
   use mech9_error, only: place_type
   use mech9_text, only: to_text, join, string_type
   use mech9_source, only: source_type
-  use mech9_document, only: document_type, group_type, item_type, value_type, value_bad
+  use mech9_document, only: document_type, group_type, item_type, value_type, value_bad, value_integer
   use mech9_checker, only: check_document
   use mech9_matrix_items, only: matrix_type, read_matrix
   use mech9_diagnostics, only: diagnostics_type
@@ -113,6 +113,8 @@ contains
 
     do i = 1, size(values)
       words(i)%text = source_text(values(i)%span%first:values(i)%span%last)
+      ! a name of a link or a pair that stands for its number
+      if (values(i)%kind == value_integer .and. scan(words(i)%text, '''"') == 1) words(i)%text = to_text(values(i)%whole)
       if (values(i)%times > 1) words(i)%text = to_text(values(i)%times)//'*'//words(i)%text
     end do
     text = join(words, ', ')

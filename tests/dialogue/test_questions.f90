@@ -126,6 +126,7 @@ contains
       call draft%give('motor', 1, 'kind', '''dc''')
       call draft%give('motor', 2, 'coordinate', '1')
       call draft%give('motor', 2, 'kind', '''pid''')
+      call draft%give('link', 1, 'number', '2')
       call draft%give('stop', 1, 'coordinate', '1')
       call draft%give('friction', 1, 'coordinate', '1')
       call draft%give('contact', 1, 'point', '''P''')

@@ -1,10 +1,14 @@
 !> The check of an answer to a question against its row of the grammar, the same as that of the reader of data files.
 module mech9_answer
-  use mech9_text, only: lower, to_text
+  use mech9_kinds, only: wp
+  use mech9_text, only: lower, to_text, exact_digits
+  use mech9_formula, only: formula_problem_type
+  use mech9_formula_value, only: evaluate_number
   use mech9_source, only: source_type, span_type, source_from_text
   use mech9_grammar, only: item_row_type
   use mech9_document, only: item_type
   use mech9_parser, only: parse_item
+  use mech9_setting, only: has_formula, is_formula, element_end
   use mech9_item_merge, only: expand_repeats
   use mech9_item_check, only: check_item
   use mech9_diagnostics, only: diagnostics_type, printable
@@ -22,13 +26,17 @@ contains
 
   !> Read an answer as values in the form of a data file. If this is impossible, `problem` has one message or several, a
   !> line each. Texts need no quotes, a switch may be answered by yes or no, and short forms are written in full.
-  pure subroutine read_answer(row, line, text, problem)
+  pure subroutine read_answer(row, line, text, problem, unit_of_angles)
     type(item_row_type), intent(in) :: row                 !< row of the table of names for the question
     character(len=*), intent(in) :: line                   !< the answer, without blanks around it
     character(len=:), allocatable, intent(out) :: text     !< values as a data file writes them
     character(len=:), allocatable, intent(out) :: problem  !< the reason why it is no answer; empty: it is one
+    real(wp), intent(in), optional :: unit_of_angles       !< of formulas [rad]; a rad where it is not given
     character(len=:), allocatable :: written
+    real(wp) :: angle_unit
 
+    angle_unit = 1.0_wp
+    if (present(unit_of_angles)) angle_unit = unit_of_angles
     text = ''
     problem = ''
     if (len(line) > longest_answer) then
@@ -52,8 +60,42 @@ contains
       end if
     end if
     if (row%type == 'logical') written = switch_text(line)
+    if (row%type == 'real') call evaluate_formulas(row, angle_unit, written, problem)
+    if (problem /= '') return
     call read_values(row, written, text, problem)
   end subroutine read_answer
+
+  !> Write the values of formulas of numbers in their places: 49.49747468305833 for 35*sqrt(2).
+  pure subroutine evaluate_formulas(row, angle_unit, written, problem)
+    type(item_row_type), intent(in) :: row                      !< row of the table of names for the question
+    real(wp), intent(in) :: angle_unit                          !< unit of angles of formulas [rad]
+    character(len=:), allocatable, intent(inout) :: written     !< numbers and formulas, with commas between them
+    character(len=:), allocatable, intent(inout) :: problem     !< stays empty where the formulas have values
+    type(formula_problem_type) :: wrong
+    character(len=:), allocatable :: text
+    integer :: first, last
+    real(wp) :: value
+
+    if (.not. has_formula(written, 0, row%high == 1)) return
+    text = ''
+    last = 0
+    do while (last <= len(written))
+      first = last + 1
+      last = element_end(written, first)
+      if (first > 1) text = text//', '
+      if (is_formula(written(first:last - 1), row%high == 1)) then
+        call evaluate_number(trim(adjustl(written(first:last - 1))), angle_unit, value, wrong)
+        if (allocated(wrong%words)) then
+          problem = "'"//printable(trim(adjustl(written(first:last - 1))), 40)//"': "//wrong%words
+          return
+        end if
+        text = text//to_text(value, exact_digits(value))
+      else
+        text = text//trim(adjustl(written(first:last - 1)))
+      end if
+    end do
+    written = text
+  end subroutine evaluate_formulas
 
   !> Whether a row of the table of names is about a file.
   pure logical function names_file(row)

@@ -26,6 +26,13 @@ module mech9_pair_explanations
     explanation_type('pair', 'coordinates', 'free', &
                   'A link that moves freely against another one has six coordinates: slides along the x, y and z axes of the '// &
                   'joint''s frame, then turns about x, y and z. The first is the number of the joint.', '4, 5, 6, 7, 8, 9'), &
+    explanation_type('pair', 'name', '', &
+                  'A pair may have a name, which may stand wherever the number of its coordinate does. Results can call its '// &
+                  'columns by it.', 'B'), &
+    explanation_type('link', 'number', '', &
+                  'A link may have a name. Tell which link by its number. Enter goes on without a further name.', '2'), &
+    explanation_type('link', 'name', '', &
+                  'The name may stand wherever the number of the link does.', 'crank'), &
     explanation_type('pair', 'links', '', &
                   'Name the two links that the pair joins by their numbers. The first is the reference link, in whose '// &
                   'system the pair is described; the second is the moving link. A positive coordinate moves the second '// &

@@ -37,6 +37,9 @@ module mech9_run_explanations
     explanation_type('parameter', 'sets', '', &
                   'Name each number as --set does: the group, its place among the groups of this name where there are several, '// &
                   'the name in it, and the place of the number in a list.', 'pair(2).point(1), body(1).centre(1)'), &
+    explanation_type('parameter', 'formula', '', &
+                  'A parameter can follow from others, which its formula names. It then has no value of its own.', &
+                  'sqrt(a^2 + b^2)'), &
     explanation_type('parameter', 'factors', '', &
                   'A number can be a multiple of the parameter: the mass centre of a bar lies at half its length.', '1, 0.5'), &
     explanation_type('parameter', 'terms', '', &

@@ -21,6 +21,8 @@ module mech9_topics
                'mechanism and give all points and directions in the frame, as they are in that position; all coordinates are '// &
                'then 0 there. Where links have systems of their own, they are given in the reference link, and again in the '// &
                'moving link as moving_point, moving_axis and moving_zero.'), &
+    topic_type('Names of links', 'link', 'A name of a link may stand for its number. '// &
+               'A name begun by mistake is left out by remove.'), &
     topic_type('Couplings', 'coupling', 'Gears, racks, belts and screws couple coordinates. Each coupling makes one more '// &
                'coordinate dependent. A coupling begun by mistake is left out by remove.'), &
     topic_type('Drives', 'drive', 'An independent coordinate with a drive is a given function of time; mech9k needs one '// &
@@ -96,8 +98,8 @@ contains
   pure logical function is_on_request(group_row)
     integer, intent(in) :: group_row  !< row of the group in group_table
 
-    is_on_request = any(group_table(group_row)%name == ['stop     ', 'friction ', 'contact  ', 'parameter', 'quantity ', &
-                                                        'study    ', 'objective', 'limit    ', 'optimum  '])
+    is_on_request = any(group_table(group_row)%name == ['link     ', 'stop     ', 'friction ', 'contact  ', 'parameter', &
+                                                        'quantity ', 'study    ', 'objective', 'limit    ', 'optimum  '])
   end function is_on_request
 
   !> Whether the user begins the groups of a name, and can leave them out. There can be any number of most of them, and one of
