@@ -2,7 +2,6 @@
 
 Places of texts and marks are those of the SVG that gnuplot draws. A crank that turns once has marks at 0, 90 .. 360 degrees.
 """
-import itertools
 import os
 import re
 import xml.etree.ElementTree as xml
@@ -11,12 +10,9 @@ import numpy as np
 import pytest
 
 from mech9_cases import TREE, run
+from plot_texts import SVG, check_apart, texts_of
 
-SVG = '{http://www.w3.org/2000/svg}'
 FIG1 = os.path.join(TREE, 'examples', 'fig1', 'fig1.nml')
-# width of a letter of DejaVu Sans as a part of its size, at most on average, and height of a line
-LETTER, LINE = 0.62, 0.8
-
 PRESS = """&mechanism title='press', angle_unit='{unit}' /
 &structure cq=1 /
 &pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
@@ -29,31 +25,6 @@ PRESS = """&mechanism title='press', angle_unit='{unit}' /
 &drive coordinate=1, kind='polynomial', coefficients=0, {turn} /
 &time end=1, intervals=90 /
 """
-
-
-class Text:
-    """A text of a picture with the box that it fills."""
-
-    def __init__(self, words, at, anchor, size, turned):
-        self.words, self.at, self.turned = words, at, turned
-        width = LETTER * size * len(words)
-        left = {'start': 0.0, 'middle': -0.5, 'end': -1.0}[anchor] * width
-        box = np.array([[left, -LINE * size], [left + width, 0.0]])
-        self.box = box + at if not turned else np.array([[-LINE * size, -0.5 * width], [0.0, 0.5 * width]]) + at
-
-    def overlaps(self, other):
-        return all(self.box[0] < other.box[1]) and all(other.box[0] < self.box[1])
-
-
-def texts_of(path):
-    found = []
-    for group in xml.parse(path).getroot().iter(SVG + 'g'):
-        words = [' '.join(''.join(text.itertext()).split()) for text in group.findall(SVG + 'text')]
-        place = re.match(r'translate\(([-\d.]+),([-\d.]+)\)( rotate)?', group.get('transform', ''))
-        if words and words[0] and place:
-            found.append(Text(words[0], np.array([float(place.group(1)), float(place.group(2))]), group.get('text-anchor'),
-                              float(group.get('font-size')), bool(place.group(3))))
-    return found
 
 
 def drawn(checks, program, data, folder, *plots):
@@ -94,8 +65,7 @@ def test_no_text_overlaps(checks, gnuplot, mech9k, press, tmp_path):
              'closure,ddq2', 'q1:closure', 'M.ax:M.ay')
     for plot, texts in zip(plots, drawn(checks, mech9k, data, tmp_path, *plots)):
         checks.true(len(texts) > 8, f'{unit} {plot}: numbers and labels', len(texts))
-        for one, other in itertools.combinations(texts, 2):
-            checks.true(not one.overlaps(other), f'{unit} {plot}: texts stand apart', (one.words, other.words))
+        check_apart(checks, texts, f'{unit} {plot}')
 
 
 def test_marks_of_angles(checks, gnuplot, mech9k, press, tmp_path):

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from mech9_cases import TREE, read_table, run, text_of
+from plot_texts import check_apart, texts_of
 
 DONE, USAGE = 0, 2
 FOLDER = os.path.join(TREE, 'examples', 'timed_path')
@@ -96,6 +97,10 @@ def test_plot_of_a_function(cases):
     made = cases.table('best.nml', '--set', 'time.intervals=720')
     check.near(blocks['curve1'], np.transpose([made['q1'], made['q4']]), 1e-12, 'function: the curve is that of a run')
     check.near(blocks['targets2'][:, 1], blocks['reached1'][:, 1] - blocks['targets1'][:, 1], 1e-12, 'function: the differences')
+    if shutil.which('gnuplot'):
+        texts = texts_of(cases.path('fit.svg'))
+        check_apart(check, texts, 'function')
+        check.true({'best design', 'targets', 'best design less target'} <= {text.words for text in texts}, 'function: legends')
     value = np.sum(np.radians(blocks['targets2'][:, 1])**2)
     check.near(value/read_table(text_of(cases.path('designs.dat')))['value'][0], 1, 1e-7, 'function: their squares are the value')
 

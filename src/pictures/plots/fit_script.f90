@@ -5,6 +5,7 @@ module mech9_fit_script
   use mech9_printable, only: printable
   use mech9_gnuplot, only: quoted, quoted_lines, quoted_path
   use mech9_plot_style, only: plot_style, picture_terminal, picture_title, axis_format, first_colour, second_colour
+  use mech9_plot_axes, only: axis_commands
   use mech9_plot_blocks, only: block_of, find_layout
   implicit none
   private
@@ -25,9 +26,15 @@ module mech9_fit_script
   character, parameter :: line_end = achar(10)
   !> Most targets that are numbered in a plane, and along a function, where their order can be seen.
   integer, parameter :: most_in_plane = 60, most_of_function = 12
-  !> Room of a digit, and the height of a number [px]; and the parts of a picture and panel that axes and legend leave
-  !> free.
-  real(wp), parameter :: digit = 9.0_wp, line_height = 15.0_wp, free_part(2) = [0.75_wp, 0.6_wp]
+  !> Room of a digit, and the height of a number [px].
+  real(wp), parameter :: digit = 9.0_wp, line_height = 15.0_wp
+  !> Room around the area between the axes of a panel: at its left and right, above and below [px]; above all of several panels, and of
+  !> a line of the title of one.
+  integer, parameter :: beside(2) = [100, 30], above = 36, below = 116, head = 46, title_line = 20
+  !> Place of the legend above the lower end of a panel [px].
+  integer, parameter :: legend = 16
+  !> Half of an axis with equal scales, in parts of the length of the values: directions are drawn beyond these.
+  real(wp), parameter :: half_axis = 0.62_wp
   !> Length of a direction in parts of the size of the targets.
   real(wp), parameter :: arrow = 0.08_wp
 
@@ -41,14 +48,20 @@ contains
     character(len=*), intent(in) :: script             !< name of the file of the script, without its folder
     character(len=:), allocatable :: text
     type(string_type), allocatable :: lines(:)
-    integer :: i, across, down, width, height
+    integer :: i, across, down, width, height, first
+    integer :: boxes(4, size(panels))
 
     call find_layout(size(panels), across, down, width, height)
     lines = picture_title(title, picture, width)
     text = '# gnuplot '//printable(script)//' draws '//printable(picture)//line_end//'set encoding utf8'//line_end// &
            picture_terminal(picture, width, height)//line_end//'set output '//quoted_path(picture)//line_end//plot_style()
+    first = head
+    if (size(panels) == 1) first = title_line*size(lines)
     do i = 1, size(panels)
-      text = text//blocks_of(i, panels(i))//numbers_of(i, panels(i), [real(wp) :: width/across, height/down])
+      boxes(:, i) = [mod(i - 1, across)*(width/across) + beside(1), (mod(i - 1, across) + 1)*(width/across) - beside(2), &
+                     height - first - ((i - 1)/across + 1)*((height - first)/down) + below, &
+                     height - first - ((i - 1)/across)*((height - first)/down) - above]
+      text = text//blocks_of(i, panels(i))//numbers_of(i, panels(i), real(boxes(2:4:2, i) - boxes(1:3:2, i), wp))
     end do
     if (size(panels) == 1) then
       text = text//'set title '//quoted_lines(lines)//line_end
@@ -57,7 +70,7 @@ contains
     end if
     do i = 1, size(panels)
       if (size(panels) > 1) text = text//'set title '//quoted(panels(i)%title)//line_end
-      text = text//axes_of(panels(i))//curves_of(i, panels(i))
+      text = text//margins_of(boxes(:, i), width, height)//axes_of(panels(i), boxes(:, i))//curves_of(i, panels(i))
     end do
     if (size(panels) > 1) text = text//'unset multiplot'//line_end
     text = text//'unset output'//line_end
@@ -115,7 +128,7 @@ contains
   pure function numbers_of(i, panel, sides) result(text)
     integer, intent(in) :: i                      !< number of the panel
     type(fit_panel_type), intent(in) :: panel     !< the panel
-    real(wp), intent(in) :: sides(2)              !< width and height of the panel [px]
+    real(wp), intent(in) :: sides(2)              !< width and height of the area between its axes [px]
     character(len=:), allocatable :: text
     integer, allocatable :: shown(:)
 
@@ -136,7 +149,7 @@ contains
   !> The targets whose numbers do not cover each other: the first and the last one before those between.
   pure function numbers_with_room(panel, sides) result(shown)
     type(fit_panel_type), intent(in) :: panel     !< the panel
-    real(wp), intent(in) :: sides(2)              !< width and height of the panel [px]
+    real(wp), intent(in) :: sides(2)              !< width and height of the area between its axes [px]
     integer, allocatable :: shown(:)
     logical :: has_room(size(panel%targets, 1))
     real(wp) :: places(size(panel%targets, 1), 2), ends(2, 2), scale(2)
@@ -144,8 +157,8 @@ contains
 
     m = size(panel%targets, 1)
     ends = reshape([ends_of(panel, 1), ends_of(panel, 2)], [2, 2])
-    scale = free_part*sides/max(ends(2, :) - ends(1, :), tiny(1.0_wp))
-    if (panel%equal_scales) scale = minval(scale)
+    scale = sides/max(ends(2, :) - ends(1, :), tiny(1.0_wp))
+    if (panel%equal_scales) scale = minval(scale)/(2.0_wp*half_axis)
     places = panel%targets(:, :2)*spread(scale, 1, m)
     has_room = .false.
     do k = 1, m
@@ -156,20 +169,59 @@ contains
     shown = pack([(i, i=1, m)], has_room)
   end function numbers_with_room
 
-  !> The commands for the axes of a panel.
-  pure function axes_of(panel) result(text)
-    type(fit_panel_type), intent(in) :: panel     !< the panel
+  !> The commands for the place of a panel, and of its legend below it.
+  pure function margins_of(box, width, height) result(text)
+    integer, intent(in) :: box(4)                 !< left, right, lower and upper side of the area between the axes [px]
+    integer, intent(in) :: width                  !< of the picture [px]
+    integer, intent(in) :: height                 !< of the picture [px]
     character(len=:), allocatable :: text
 
+    text = 'set lmargin at screen '//part(box(1), width)//line_end//'set rmargin at screen '//part(box(2), width)//line_end// &
+           'set bmargin at screen '//part(box(3), height)//line_end//'set tmargin at screen '//part(box(4), height)//line_end// &
+           'set key at screen '//part((box(1) + box(2))/2, width)//', screen '//part(box(3) - below + legend, height)// &
+           ' center center horizontal Left reverse samplen 2'//line_end
+  end function margins_of
+
+  !> A part of a length as text.
+  pure function part(place, length) result(text)
+    integer, intent(in) :: place    !< distance from its beginning [px]
+    integer, intent(in) :: length   !< the length [px]
+    character(len=:), allocatable :: text
+
+    text = to_text(real(place, wp)/length, 6)
+  end function part
+
+  !> The commands for the axes of a panel. Ranges with equal scales fill its area.
+  pure function axes_of(panel, box) result(text)
+    type(fit_panel_type), intent(in) :: panel     !< the panel
+    integer, intent(in) :: box(4)                 !< left, right, lower and upper side of the area between the axes [px]
+    character(len=:), allocatable :: text
+    real(wp) :: x(2), y(2), scale
+
+    x = ends_of(panel, 1)
+    y = ends_of(panel, 2)
     text = 'set xlabel '//quoted(panel%x_label)//line_end//'set ylabel '//quoted(panel%y_label)//line_end// &
-           'set format x '//axis_format(ends_of(panel, 1))//line_end//'set format y '//axis_format(ends_of(panel, 2))//line_end// &
-           'set key outside below center horizontal Left reverse samplen 2'//line_end
+           'set format x '//axis_format(x)//line_end//'set format y '//axis_format(y)//line_end// &
+           merge('set size ratio -1', 'set size noratio ', panel%equal_scales)//line_end
     if (panel%equal_scales) then
-      text = text//'set size ratio -1'//line_end
-    else
-      text = text//'set size noratio'//line_end
+      scale = half_axis*max((x(2) - x(1))/(box(2) - box(1)), (y(2) - y(1))/(box(4) - box(3)))
+      x = 0.5_wp*(x(1) + x(2)) + scale*(box(2) - box(1))*[-1.0_wp, 1.0_wp]
+      y = 0.5_wp*(y(1) + y(2)) + scale*(box(4) - box(3))*[-1.0_wp, 1.0_wp]
     end if
+    text = text//axis_commands('x', x, unit_in(panel%x_label), box(2) - box(1), panel%equal_scales)// &
+           axis_commands('y', y, unit_in(panel%y_label), box(4) - box(3), panel%equal_scales)
   end function axes_of
+
+  !> The unit at the end of a label, between brackets; empty where there is none.
+  pure function unit_in(label) result(unit)
+    character(len=*), intent(in) :: label   !< such as q1 [deg]
+    character(len=:), allocatable :: unit
+    integer :: from
+
+    from = index(label, '[', back=.true.)
+    unit = ''
+    if (from > 0) unit = label(from + 1:max(from, len_trim(label) - 1))
+  end function unit_in
 
   !> Least and greatest number on an axis.
   pure function ends_of(panel, axis) result(ends)

@@ -21,13 +21,14 @@ module mech9_plot_layout
   !> Usual size of a picture, height of each of several panels, longest one of a panel with equal scales, and longer side of such a
   !> panel alone [px].
   integer, parameter :: usual_width = 960, one_height = 440, panel_height = 195, highest = 620, longer_side = 700
-  !> Room of a letter and a line, of the axis below with its label, the same between panels, above beside the title, between panels
+  !> Room of a letter, one in a key, and a line, of the axis below with its label, the same between panels, above beside the title, between panels
   !> that share an axis, at the right side, and of the sample in a key [px]. gnuplot leaves out texts that have no room.
-  integer, parameter :: letter = 9, line = 20, below = 78, between = 94, above = 32, shared = 32, beside = 36, sample = 54
+  integer, parameter :: letter = 9, key_letter = 10, line = 20, below = 78, between = 94, above = 32, shared = 32, beside = 36, &
+                        sample = 54
   !> The sides of an area with equal scales differ at most by these factors: one that is wide, and one that is tall.
   real(wp), parameter :: flattest = 0.35_wp, slimmest = 0.6_wp
   !> Letters that the numbers of an upward axis take at least, with its label.
-  integer, parameter :: fewest_letters = 12, label_letters = 6, longest_kind = 6
+  integer, parameter :: fewest_letters = 12, label_letters = 7, longest_kind = 6
 
 contains
 
@@ -127,8 +128,8 @@ contains
     room = beside
     do i = 1, maxval(panels)
       own = pack(curves, panels == i)
-      if (size(own) > 1) room = max(room, sample + letter*longest_name(own, data))
-      if (with_events .and. over_time(own(1))) room = max(room, sample + letter*longest_kind)
+      if (size(own) > 1) room = max(room, sample + key_letter*longest_name(own, data))
+      if (with_events .and. over_time(own(1))) room = max(room, sample + key_letter*longest_kind)
     end do
   end function right_of
 

@@ -53,7 +53,8 @@ contains
 
     do i = 1, size(mechanism%contacts)
       associate (contact => mechanism%contacts(i))
-        if (.not. (contact%is_plane .or. any([(same_surface(contact, mechanism%contacts(j)), j=1, i - 1)]))) then
+        if (contact%is_plane .or. .not. contact%other_radius > 0.0_wp) cycle
+        if (.not. (any([(same_surface(contact, mechanism%contacts(j)), j=1, i - 1)]))) then
           call add_sphere(contact%links(2), contact%origin, contact%other_radius, name_of(i), projection, scene)
         end if
       end associate

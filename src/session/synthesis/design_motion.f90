@@ -95,6 +95,9 @@ contains
     allocate (row(self%run%source%columns%width()), source=0.0_wp)
     film = new_film(shown%mechanism, shown%problem%partition%independent(), shown%request%time%intervals + 1, &
                     self%run%source%columns)
+    associate (output => shown%request%output)
+      call film%keep_point_motion(output%velocity_arrows, output%acceleration_arrows)
+    end associate
     do i = 0, shown%request%time%intervals
       call self%run%source%row_at(shown%request%time%time(i), row, err)
       if (allocated(err)) exit
