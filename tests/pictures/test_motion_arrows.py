@@ -46,6 +46,19 @@ def test_arrows_are_rates_of_points(checks, mech9k, tmp_path, name):
             checks.near(foot - foot[0], place - place[0], 2e-4, f'{name}: it begins in {point}', scale=1.0)
 
 
+def test_longest_arrow(checks, mech9k, tmp_path):
+    """The longest arrow of each kind is 0.22 of the diagonal of the box around pairs and points at the start."""
+    done = run(mech9k, example('slider_crank'), '--quiet', '--animate', 'film.html', '--table', 'film.dat', '--set',
+               'output.velocity_arrows=.true.', '--set', 'output.acceleration_arrows=.true.', folder=tmp_path)
+    checks.equal(done.returncode, 0, done.stderr)
+    arrows = arrows_of(text_of(tmp_path / 'film.html'))[1]
+    first = {name: values[0] for name, values in read_table(text_of(tmp_path / 'film.dat')).items()}
+    upmost = max(0.3 * np.sin(first['q1']), first['B.y'], first['M.y'])
+    for kind in ('velocity', 'acceleration'):
+        longest = max(np.linalg.norm(way, axis=1).max() for name, (_, way) in arrows.items() if name.startswith(kind))
+        checks.near(longest, 0.22 * np.hypot(first['B.x'], upmost), 1e-3, f'{kind}: the longest arrow')
+
+
 def test_arrows_without_recorded_rates(checks, mech9k, tmp_path):
     """Arrows do not need columns of rates."""
     films = []
