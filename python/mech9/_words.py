@@ -14,7 +14,7 @@ _RUN_GROUPS = {
     'time': ('start', 'end', 'intervals'),
     'solver': ('method', 'accuracy', 'relative_tolerance', 'absolute_tolerance', 'maximum_steps'),
     'output': ('coordinates', 'derivatives', 'energies', 'reactions', 'reaction_pairs', 'drive_forces', 'sensitivities', 'gradients',
-               'poses', 'conditioning'),
+               'poses', 'conditioning', 'links', 'poles', 'reaction_magnitudes', 'reaction_axes'),
 }
 
 

@@ -24,8 +24,8 @@ module mech9_part_names
   character(len=8), parameter :: of_pairs(11) = [character(len=8) :: 'fx', 'fy', 'fz', 'mx', 'my', 'mz', 'f', 'm', 'friction', &
                                                  'loss', 'heat']
   !> Ends of columns of links, L3.phi, likewise.
-  character(len=6), parameter :: of_links(15) = [character(len=6) :: 'phi', 'omega', 'alpha', 'e0', 'e1', 'e2', 'e3', &
-                                                 'wx', 'wy', 'wz', 'alphax', 'alphay', 'alphaz', 'pole.x', 'pole.y']
+  character(len=6), parameter :: of_links(16) = [character(len=6) :: 'phi', 'omega', 'alpha', 'e0', 'e1', 'e2', 'e3', &
+                                                 'wx', 'wy', 'wz', 'alphax', 'alphay', 'alphaz', 'pole.x', 'pole.y', 'pole.z']
 
 contains
 

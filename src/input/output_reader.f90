@@ -2,13 +2,15 @@
 module mech9_output_reader
   use mech9_text, only: to_text
   use mech9_structure, only: structure_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_turning_plane, only: turning_plane_type, find_turning_plane
   use mech9_request, only: output_settings_type
   use mech9_document, only: document_type, group_type
   use mech9_lookup, only: group_or_empty, groups_named, get_integer, get_integers, get_logical, get_text, has_name, span_of
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
-  public :: read_output, check_sensitivities
+  public :: read_output, check_sensitivities, check_links
 
 contains
 
@@ -46,6 +48,11 @@ contains
     output%force_arrows = get_logical(group, 'force_arrows')
     output%velocity_arrows = get_logical(group, 'velocity_arrows')
     output%acceleration_arrows = get_logical(group, 'acceleration_arrows')
+    output%links = get_integers(group, 'links')
+    output%poles = get_integers(group, 'poles')
+    output%reaction_magnitudes = get_logical(group, 'reaction_magnitudes')
+    output%reactions_in_links = get_text(group, 'reaction_axes') == 'link'
+    call check_wrenches(group, output, diagnostics)
     output%sensitivities = get_logical(group, 'sensitivities')
     output%gradients = get_logical(group, 'gradients')
     if (output%gradients) output%sensitivities_place = diagnostics%place(span_of(group, 'gradients', 1))
@@ -66,6 +73,75 @@ contains
       end associate
     end do
   end subroutine read_output
+
+  !> Report a form of wrenches that are not recorded.
+  pure subroutine check_wrenches(group, output, diagnostics)
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    type(output_settings_type), intent(in) :: output      !< the settings
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+    character(len=19), parameter :: forms(2) = [character(len=19) :: 'reaction_magnitudes', 'reaction_axes']
+    logical :: asked(2)
+    integer :: i
+
+    if (output%reactions) return
+    asked = [output%reaction_magnitudes, output%reactions_in_links]
+    do i = 1, size(forms)
+      if (.not. asked(i)) cycle
+      call diagnostics%add(span_of(group, trim(forms(i)), 1), trim(forms(i))//' is a form of the forces in pairs, which are '// &
+                           'not recorded; set reactions=.true., too')
+    end do
+  end subroutine check_wrenches
+
+  !> Report links whose turning motion is recorded that do not exist or do not move, and poles that do not exist.
+  pure subroutine check_links(document, mechanism, output, diagnostics)
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(mechanism_type), intent(in) :: mechanism         !< the mechanism, with its pairs
+    type(output_settings_type), intent(inout) :: output   !< the settings; links in error are left out
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+    type(group_type) :: group
+    type(turning_plane_type) :: plane
+    integer :: n
+
+    group = group_or_empty(document, 'output')
+    n = mechanism%structure%shown_links()
+    call keep_moving(group, 'links', n, output%links, diagnostics)
+    call keep_moving(group, 'poles', n, output%poles, diagnostics)
+    if (size(output%poles) == 0 .or. diagnostics%failed()) return
+    if (output%derivatives == 0) call diagnostics%add(span_of(group, 'poles', 1), 'poles follow from velocities; set '// &
+                                                      'derivatives=1 or 2')
+    call find_turning_plane(mechanism%structure, mechanism%pairs, plane)
+    if (plane%found) return
+    if (plane%pair == 0) then
+      call diagnostics%add(span_of(group, 'poles', 1), 'a link has a velocity pole where it turns in a plane; '// &
+                           'no pair of this mechanism is revolute')
+    else
+      call diagnostics%add(span_of(group, 'poles', 1), 'links have velocity poles where all move in one plane; pair '// &
+                           to_text(plane%barrier)//' leaves the plane across the axis of pair '//to_text(plane%pair)// &
+                           '; leave poles out')
+    end if
+  end subroutine check_links
+
+  !> Report links that do not exist, do not move or are named twice, and leave them out.
+  pure subroutine keep_moving(group, name, n_links, links, diagnostics)
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    character(len=*), intent(in) :: name                  !< of the item with their numbers
+    integer, intent(in) :: n_links                        !< how many links there are; 0: that is not known
+    integer, allocatable, intent(inout) :: links(:)       !< their numbers
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+    integer :: i
+
+    do i = 1, size(links)
+      if (n_links == 0) exit
+      if (links(i) > n_links) then
+        call diagnostics%add(span_of(group, name, i), 'there is no link '//to_text(links(i))//'; they are 1 to '//to_text(n_links))
+      else if (links(i) == 1) then
+        call diagnostics%add(span_of(group, name, i), 'link 1 is the frame, which does not move; name other links')
+      else if (any(links(:i - 1) == links(i))) then
+        call diagnostics%add(span_of(group, name, i), 'link '//to_text(links(i))//' is there already')
+      end if
+    end do
+    links = pack(links, links > 1 .and. links <= n_links)
+  end subroutine keep_moving
 
   !> Report sensitivities and gradients without a parameter or without a quantity.
   pure subroutine check_sensitivities(document, n_parameters, diagnostics)

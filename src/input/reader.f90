@@ -28,7 +28,7 @@ module mech9_reader
   use mech9_friction_reader, only: read_frictions
   use mech9_motor_reader, only: read_motors
   use mech9_rod_holding, only: hold_idle_rods
-  use mech9_output_reader, only: read_output, check_sensitivities
+  use mech9_output_reader, only: read_output, check_sensitivities, check_links
   use mech9_study_reader, only: read_study
   use mech9_quantity_reader, only: read_quantities
   use mech9_objective_reader, only: read_objectives
@@ -155,6 +155,7 @@ contains
       call read_stops(document, request%time, m, diagnostics)
       call read_contacts(document, request%time, m, diagnostics)
       call read_output(document, m%structure, request%output, diagnostics)
+      call check_links(document, m, request%output, diagnostics)
       call read_quantities(document, request%time, request%quantities, diagnostics)
       call read_cams(document, m%structure, m%pairs, request%cams, diagnostics)
       call check_pairs_given(document, m, diagnostics)

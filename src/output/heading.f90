@@ -48,5 +48,6 @@ contains
     type(heading_type) :: heading
 
     heading = new_heading(title, columns%names(:columns%count), columns%units(:columns%count))
+    if (columns%in_links) heading%title = title//new_line('a')//'forces and moments in pairs: along the axes of the moving links'
   end function heading_of
 end module mech9_heading

@@ -8,7 +8,7 @@ module mech9_uniqueness
   use mech9_kinds, only: wp
   use mech9_tolerances, only: rank_tolerance_for
   use mech9_random, only: random_type
-  use mech9_rotation, only: turn_back, combine
+  use mech9_rotation, only: identity, turn_back, combine
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_frame_motion, only: link_motion
@@ -27,8 +27,12 @@ module mech9_uniqueness
 
   !> Forces that equilibrium determines.
   type :: uniqueness_type
-    logical, allocatable :: pairs(:, :)     !< (6,M) components of the wrench of each pair
+    logical, allocatable :: pairs(:, :)     !< (6,M) components of the wrench of each pair, in the axes of its frame in its moving link
+    logical, allocatable :: fixed(:, :)     !< (6,M) the same along the axes of link 1
+    logical, allocatable :: moving(:, :)    !< (6,M) the same along the axes of its moving link
     logical, allocatable :: couplings(:)    !< (couplings) the force of each
+  contains
+    procedure :: shown
   end type uniqueness_type
 
   !> Number of random wrenches.
@@ -36,8 +40,7 @@ module mech9_uniqueness
 
 contains
 
-  !> Find whether each component fx, fy, fz, mx, my, mz of each pair's wrench is unique, in the axes of the pair's frame in its
-  !> moving link: in a generic position, or at the start where none is found.
+  !> Find whether each component fx, fy, fz, mx, my, mz of each pair's wrench is unique: in a generic position, or at the start where none is found.
   subroutine find_unique(plan, reactions, start, unique)
     type(plan_type), intent(in) :: plan                  !< the plan of the mechanism, with all blocks
     type(reaction_plan_type), intent(in) :: reactions    !< its plan of inverse dynamics
@@ -51,6 +54,7 @@ contains
     logical :: found
 
     allocate (unique%pairs(6, plan%n_coordinates), unique%couplings(size(plan%couplings)), source=.true.)
+    allocate (unique%fixed, unique%moving, source=unique%pairs)
     if (size(reactions%clusters) == 0 .and. size(plan%couplings) == 0) return
     call find_generic_position(plan, plan%blocks, start, generic, found)
     state = start
@@ -59,9 +63,19 @@ contains
     call find_geometry(plan, reactions, state, geometry)
     call judge_couplings(plan, state, unique%couplings, forces)
     do c = 1, size(reactions%clusters)
-      call judge_cluster(plan, reactions, reactions%clusters(c), state, geometry, forces, unique%pairs)
+      call judge_cluster(plan, reactions, reactions%clusters(c), state, geometry, forces, unique)
     end do
   end subroutine find_unique
+
+  !> The components that are unique along the axes of the results.
+  pure function shown(self, in_links) result(unique)
+    class(uniqueness_type), intent(in) :: self   !< the components
+    logical, intent(in) :: in_links              !< these are the axes of the moving links; else of link 1
+    logical :: unique(size(self%pairs, 1), size(self%pairs, 2))
+
+    unique = self%fixed
+    if (in_links) unique = self%moving
+  end function shown
 
   !> The couplings whose forces are unique, and random forces of the others that have no effect together.
   subroutine judge_couplings(plan, state, unique, forces)
@@ -91,7 +105,7 @@ contains
     type(state_type), intent(in) :: state                 !< the position
     type(joint_geometry_type), intent(in) :: geometry     !< of the position
     real(wp), intent(in) :: forces(:, :)                  !< (M,samples) of couplings on the coordinates [N m, N]
-    logical, intent(inout) :: unique(:, :)                !< (6,M) becomes false where a component is not unique
+    type(uniqueness_type), intent(inout) :: unique        !< becomes false where a component is not unique
     type(cluster_balance_type) :: balance
     type(singular_cluster_type) :: singular
     type(random_type) :: random
@@ -116,7 +130,7 @@ contains
         call hold(balance, cluster, geometry, forces(:, sample), wrenches)
       end if
       do i = 1, size(cluster%pairs)
-        call judge_pair(plan, reactions, cluster%pairs(i), state, wrenches(:, i), tolerance, unique(:, cluster%pairs(i)))
+        call judge_pair(plan, reactions, cluster%pairs(i), state, wrenches(:, i), tolerance, unique)
       end do
     end do
   end subroutine judge_cluster
@@ -158,7 +172,7 @@ contains
     end do
   end subroutine hold
 
-  !> Mark the components of a pair's wrench that are not zero, in the axes of its frame in the moving link.
+  !> Mark the components of a pair's wrench that are not zero, in all axes.
   pure subroutine judge_pair(plan, reactions, k, state, wrench, tolerance, unique)
     type(plan_type), intent(in) :: plan                  !< the plan of the mechanism
     type(reaction_plan_type), intent(in) :: reactions    !< the plan of inverse dynamics
@@ -166,12 +180,23 @@ contains
     type(state_type), intent(in) :: state                !< the position
     real(wp), intent(in) :: wrench(6)                    !< axes of link 1, scaled
     real(wp), intent(in) :: tolerance                    !< smaller components are zero
-    logical, intent(inout) :: unique(6)                  !< becomes false where a component is not zero
+    type(uniqueness_type), intent(inout) :: unique       !< becomes false where a component is not zero
     real(wp) :: r(3, 3), p(3), omega(3), v(3)
 
     call link_motion(plan, state, reactions%pairs(k)%links(1), r, p, omega, v)
-    r = combine(r, reactions%pairs(k)%frame%r)
+    call judge_along(identity, wrench, tolerance, unique%fixed(:, k))
+    call judge_along(r, wrench, tolerance, unique%moving(:, k))
+    call judge_along(combine(r, reactions%pairs(k)%frame%r), wrench, tolerance, unique%pairs(:, k))
+  end subroutine judge_pair
+
+  !> Mark the components of a wrench that are not zero along some axes.
+  pure subroutine judge_along(r, wrench, tolerance, unique)
+    real(wp), intent(in) :: r(3, 3)              !< turns components in these axes into those in the axes of link 1
+    real(wp), intent(in) :: wrench(6)            !< axes of link 1, scaled
+    real(wp), intent(in) :: tolerance            !< smaller components are zero
+    logical, intent(inout) :: unique(6)          !< becomes false where a component is not zero
+
     unique(1:3) = unique(1:3) .and. abs(turn_back(r, wrench(1:3))) <= tolerance
     unique(4:6) = unique(4:6) .and. abs(turn_back(r, wrench(4:6))) <= tolerance
-  end subroutine judge_pair
+  end subroutine judge_along
 end module mech9_uniqueness

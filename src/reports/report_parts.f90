@@ -2,6 +2,7 @@
 module mech9_report_parts
   use mech9_program_kind, only: program_names
   use mech9_error, only: error_type, place_type
+  use mech9_text, only: to_text
   use mech9_uniqueness, only: uniqueness_type, component_names
   use mech9_json, only: json_type
   use mech9_source, only: span_type
@@ -142,13 +143,17 @@ contains
     call json%end_array()
   end subroutine add_names
 
-  !> Add the components of the recorded wrenches that equilibrium determines: [{"pair": 1, "unique": ["fx", ...]}, ...]
-  subroutine add_uniqueness(json, recorded, unique)
+  !> Add the components of the recorded wrenches that equilibrium determines, and the columns that it does not determine:
+  !> [{"pair": 1, "unique": ["fx", ...], "undetermined_columns": ["R1.fz", ...]}, ...]
+  subroutine add_uniqueness(json, recorded, unique, in_links)
     type(json_type), intent(inout) :: json  !< the report, inside its object
     logical, intent(in) :: recorded(:)      !< (M) pairs whose wrenches are recorded
     type(uniqueness_type), intent(in) :: unique  !< components and forces that it determines
+    logical, intent(in) :: in_links         !< columns are along the axes of the moving links; else of link 1
+    logical :: shown(6, size(recorded))
     integer :: i, k
 
+    shown = unique%shown(in_links)
     call json%begin_array('reactions')
     do k = 1, size(recorded)
       if (.not. recorded(k)) cycle
@@ -157,6 +162,11 @@ contains
       call json%begin_array('unique')
       do i = 1, 6
         if (unique%pairs(i, k)) call json%add(component_names(i))
+      end do
+      call json%end_array()
+      call json%begin_array('undetermined_columns')
+      do i = 1, 6
+        if (.not. shown(i, k)) call json%add('R'//to_text(k)//'.'//component_names(i))
       end do
       call json%end_array()
       call json%end_object()

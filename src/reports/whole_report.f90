@@ -41,7 +41,8 @@ contains
     if (associated(free)) call add_free(json, run%motion, free)
     call report_quantities(run%source%quantities, json)
     associate (forces => run%source%forces)
-      if (allocated(forces%unique)) call add_uniqueness(json, reacting_pairs(model), forces%unique)
+      if (allocated(forces%unique)) &
+        call add_uniqueness(json, reacting_pairs(model), forces%unique, model%request%output%reactions_in_links)
     end associate
     if (associated(driven)) then
       ! only the blocks that are requested are executed

@@ -5,8 +5,6 @@ module mech9_columns
   use mech9_text, only: string_type, to_text
   use mech9_request, only: output_settings_type
   use mech9_motor, only: motor_action_type
-  use mech9_motion_view, only: link_motion_type
-  use mech9_contact, only: contact_place_type
   use mech9_mechanism, only: mechanism_type
   use mech9_units, only: units_type
   use mech9_result_units, only: si_unit, si_force
@@ -18,7 +16,6 @@ module mech9_columns
   use mech9_derivative_columns, only: derivative_columns_type, new_derivative_columns
   use mech9_poses, only: poses_type, poses_of
   use mech9_frame_motion, only: point_motion
-  use mech9_contact_motion, only: place_of_contact
   implicit none
   private
   public :: columns_type, kinematic_columns
@@ -34,7 +31,10 @@ module mech9_columns
     integer :: couplings = 0                !< how many couplings have columns of their forces, after those of pairs
     integer :: motors = 0                   !< how many columns belong to motors, after those of forces
     integer :: energies = 0                 !< how many columns belong to energies, after those of motors
-    integer :: stops = 0                    !< how many columns belong to stops, after those of energies
+    integer :: magnitudes = 0               !< how many columns belong to magnitudes of wrenches, after those of energies
+    integer :: links = 0                    !< how many columns belong to links, after those of magnitudes
+    integer :: stops = 0                    !< how many columns belong to stops, after those of links
+    logical :: in_links = .false.           !< wrenches of pairs are along the axes of the moving links; else of link 1
     integer :: frictions = 0                !< how many columns belong to frictions, after those of stops
     integer :: contacts = 0                 !< how many columns belong to contacts of links, after those of frictions
     integer :: varied = 0                   !< how many columns, from the second one on, have derivatives by parameters
@@ -52,12 +52,11 @@ module mech9_columns
     procedure :: fill_forces
     procedure :: append_motors
     procedure :: fill_motors
+    procedure :: before_stops
     procedure :: append_stops
     procedure :: fill_stops
     procedure :: append_frictions
     procedure :: fill_frictions
-    procedure :: append_contacts
-    procedure :: fill_contacts
     procedure :: append_energies
     procedure :: append_sensitivities
     procedure :: find_unit_per
@@ -216,6 +215,13 @@ contains
     end do
   end subroutine fill_motors
 
+  !> How many columns stand before those of stops: those that may have derivatives by parameters, and time.
+  pure integer function before_stops(self) result(before)
+    class(columns_type), intent(in) :: self  !< the columns
+
+    before = self%motion + self%forces() + self%motors + self%energies + self%magnitudes + self%links
+  end function before_stops
+
   !> Append the columns of stops: the force of each.
   subroutine append_stops(self, mechanism)
     class(columns_type), intent(inout) :: self     !< the columns
@@ -239,7 +245,7 @@ contains
     real(wp), intent(inout) :: row(:)                   !< numbers of one row, one for each column
     integer :: at, i
 
-    at = self%motion + self%forces() + self%motors + self%energies
+    at = self%before_stops()
     do i = 1, self%stops
       associate (stop => mechanism%stops(i))
         row(at + i) = 0.0_wp
@@ -281,7 +287,7 @@ contains
     real(wp), intent(inout) :: row(:)                   !< numbers of one row, one for each column
     integer :: at, i
 
-    at = self%motion + self%forces() + self%motors + self%energies + self%stops
+    at = self%before_stops() + self%stops
     row(at + 1:at + self%frictions) = 0.0_wp
     if (.not. allocated(state%friction)) return
     do i = 1, size(state%friction)
@@ -294,48 +300,6 @@ contains
     end do
   end subroutine fill_frictions
 
-  !> Append the columns of contacts of links: gap, normal force and friction of each.
-  subroutine append_contacts(self, mechanism)
-    class(columns_type), intent(inout) :: self     !< the columns
-    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
-    integer :: i
-
-    if (.not. mechanism%has_contacts()) return
-    self%contacts = 3*size(mechanism%contacts)
-    do i = 1, size(mechanism%contacts)
-      call self%append_in('K'//to_text(i)//'.gap', 'm', 'gap of contact '//to_text(i))
-      call self%append_in('K'//to_text(i)//'.fn', 'N', 'normal force of contact '//to_text(i))
-      call self%append_in('K'//to_text(i)//'.ft', 'N', 'friction of contact '//to_text(i))
-    end do
-  end subroutine append_contacts
-
-  !> Fill the columns of contacts of links in a row.
-  pure subroutine fill_contacts(self, mechanism, plan, state, row)
-    class(columns_type), intent(in) :: self             !< the columns
-    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
-    type(plan_type), intent(in) :: plan                 !< its plan
-    type(state_type), intent(in) :: state               !< motion of the mechanism, with the forces of contacts
-    real(wp), intent(inout) :: row(:)                   !< numbers of one row, one for each column
-    type(contact_place_type) :: place
-    type(link_motion_type) :: ball, surface
-    integer :: at, i
-
-    at = self%motion + self%forces() + self%motors + self%energies + self%stops + self%frictions
-    do i = 1, self%contacts/3
-      call place_of_contact(mechanism%contacts(i), plan, state, place, ball, surface)
-      row(at + 1) = place%gap
-      row(at + 2) = mechanism%contacts(i)%normal_force(place)
-      row(at + 3) = 0.0_wp
-      if (allocated(state%contact_force)) then
-        associate (force => state%contact_force(:, i))
-          row(at + 2) = dot_product(force, place%normal)
-          row(at + 3) = norm2(force - row(at + 2)*place%normal)
-        end associate
-      end if
-      at = at + 3
-    end do
-  end subroutine fill_contacts
-
   !> Append the columns of energies.
   pure subroutine append_energies(self)
     class(columns_type), intent(inout) :: self       !< the columns
@@ -346,7 +310,7 @@ contains
     self%energies = 3
   end subroutine append_energies
 
-  !> Append the derivatives of the columns of motion, forces, motors and energies, but for time: those of each column by all
+  !> Append the derivatives of the columns of motion, forces, motors, energies and links, but for time: those of each column by all
   !> parameters side by side, as they stand in an HDF5 file. Those that are not recorded stand after the poses, without names.
   pure subroutine append_sensitivities(self, parameters, units, recorded)
     class(columns_type), intent(inout) :: self       !< the columns
@@ -358,7 +322,7 @@ contains
 
     self%parameters = parameters
     self%parameter_units = units
-    self%varied = self%motion - 1 + self%forces() + self%motors + self%energies
+    self%varied = self%before_stops() - 1
     if (.not. recorded) then
       self%unrecorded = size(parameters)*self%varied
       return
@@ -443,7 +407,7 @@ contains
     call self%derived%fill(changes, first, n, list - 1, before_sensitivities(self), size(rows, 1), rows)
   end subroutine fill_sensitivities
 
-  !> Fill the columns of the derivatives of forces, motors and energies by parameters in a row.
+  !> Fill the columns of the derivatives of forces, motors, energies and links by parameters in a row.
   pure subroutine fill_beyond_motion(self, values, row)
     class(columns_type), intent(in) :: self        !< the columns
     real(wp), intent(in) :: values(:, :)           !< (P,columns) derivatives, in the order of these columns

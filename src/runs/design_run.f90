@@ -10,6 +10,7 @@ module mech9_design_run
   use mech9_row_source, only: find_columns
   use mech9_columns, only: columns_type
   use mech9_force_record, only: force_record_type
+  use mech9_link_record, only: link_record_type
   use mech9_quantity_record, only: quantity_record_type
   implicit none
   private
@@ -83,8 +84,9 @@ contains
     type(model_type), intent(in) :: model                   !< the model
     type(columns_type), intent(out) :: columns              !< of each run
     type(force_record_type) :: forces
+    type(link_record_type) :: links
 
     call find_columns(model, model%program == dynamics .and. model%request%output%energies, &
-                      model%request%solver%accuracy > 0.0_wp .and. .not. model%is_driven(), columns, forces)
+                      model%request%solver%accuracy > 0.0_wp .and. .not. model%is_driven(), columns, forces, links)
   end subroutine columns_of_runs
 end module mech9_design_run

@@ -10,7 +10,7 @@ module mech9_equilibrium_rows
   use mech9_single_reactions, only: find_single_reactions
   use mech9_result_units, only: si_unit, unit_name
   use mech9_columns, only: columns_type
-  use mech9_force_record, only: force_record_type
+  use mech9_force_record, only: force_record_type, fill_wrenches
   use mech9_linearised_equilibrium, only: equilibrium_type
   use mech9_mode_shapes, only: shape_of_mode
   implicit none
@@ -35,6 +35,7 @@ contains
     columns%motion = columns%count
     call forces%begin(model, columns)
     call columns%append_motors(model%mechanism)
+    call forces%append_magnitudes(model, columns)
     call columns%append_stops(model%mechanism)
     call columns%append('stable', '', '1 where no small deviation grows, else 0')
     call columns%append('growth', '1/s', 'largest real part of the eigenvalues of the linearised equations of motion')
@@ -79,7 +80,7 @@ contains
     state = equilibrium%resting%state
     call find_single_reactions(model%mechanism, equilibrium%resting%plan, state, reactions, err)
     if (.not. allocated(err)) &
-      call columns%fill_forces(reactions%needed, reactions%force, reactions%moment, reactions%couplings%values, row)
+      call fill_wrenches(reactions, columns, model%mechanism, equilibrium%resting%plan, state, row)
   end subroutine fill_forces
 
   !> The columns of a table of modes.

@@ -2,6 +2,7 @@
 module mech9_missing_column
   use mech9_text, only: to_text, nearest_name
   use mech9_partition, only: driven_coordinate
+  use mech9_turning_plane, only: turning_plane_type, find_turning_plane
   use mech9_model, only: model_type
   use mech9_columns, only: columns_type
   implicit none
@@ -21,6 +22,7 @@ contains
     if (remedy == '') call find_remedy_of_force(name, model, remedy)
     if (remedy == '') call find_remedy_of_pair(name, model, remedy)
     if (remedy == '') call find_remedy_of_coupling(name, model, columns, remedy)
+    if (remedy == '') call find_remedy_of_link(name, model, remedy)
     if (remedy == '' .and. name == 'conditioning') remedy = set_in_output('conditioning=.true.')
     if (remedy == '' .and. any(name == [character(len=11) :: 'E.kinetic', 'E.potential', 'E.total'])) then
       remedy = '; mech9d alone records energies'
@@ -110,7 +112,7 @@ contains
     remedy = ''
     point = index(name, '.')
     if (point == 0) return
-    if (all(name(point + 1:) /= ['fx', 'fy', 'fz', 'mx', 'my', 'mz'])) return
+    if (all(name(point + 1:) /= ['fx', 'fy', 'fz', 'mx', 'my', 'mz', 'f ', 'm '])) return
     k = number_after('R', name(:point - 1))
     if (k < 1 .or. k > size(model%mechanism%pairs)) return
     first = model%mechanism%structure%first_of_joint(k)
@@ -118,10 +120,49 @@ contains
       remedy = '; the first coordinate of its joint stands for it: R'//to_text(first)//name(point:)
     else if (.not. model%request%output%reactions) then
       remedy = set_in_output('reactions=.true.')
+    else if (len(name) == point + 1 .and. .not. model%request%output%reaction_magnitudes) then
+      remedy = set_in_output('reaction_magnitudes=.true.')
     else
       remedy = '; pair '//to_text(k)//' is not among reaction_pairs in &output'
     end if
   end subroutine find_remedy_of_pair
+
+  !> For the turning motion of links and for poles.
+  subroutine find_remedy_of_link(name, model, remedy)
+    character(len=*), intent(in) :: name      !< heading of the column
+    type(model_type), intent(in) :: model     !< the model
+    character(len=:), allocatable, intent(out) :: remedy   !< the end of the message; '' where there is none
+    type(turning_plane_type) :: plane
+    integer :: k, point
+    logical :: is_plane, is_space
+
+    remedy = ''
+    point = index(name, '.')
+    if (point == 0) return
+    k = number_after('L', name(:point - 1))
+    if (k < 1) return
+    is_plane = any(name(point + 1:) == [character(len=6) :: 'phi', 'omega', 'alpha', 'pole.x', 'pole.y', 'pole.z'])
+    is_space = any(name(point + 1:) == [character(len=6) :: 'e0', 'e1', 'e2', 'e3', 'wx', 'wy', 'wz', 'alphax', 'alphay', 'alphaz'])
+    if (.not. (is_plane .or. is_space)) return
+    call find_turning_plane(model%mechanism%structure, model%mechanism%pairs, plane)
+    associate (output => model%request%output)
+      if (k > model%mechanism%structure%shown_links()) then
+        remedy = '; there is no link '//to_text(k)
+      else if (k == 1) then
+        remedy = '; link 1 is the frame, which does not move'
+      else if (is_plane .and. .not. plane%found) then
+        remedy = '; the mechanism is not planar: its links have L'//to_text(k)//'.e0 to e3, wx to wz, alphax to alphaz'
+      else if (is_space .and. plane%found) then
+        remedy = '; the mechanism is planar: its links have L'//to_text(k)//'.phi, omega and alpha'
+      else if (index(name, '.pole.') > 0) then
+        if (all(output%poles /= k)) remedy = set_in_output('poles='//to_text(k))
+      else if (all(output%links /= k)) then
+        remedy = set_in_output('links='//to_text(k))
+      else
+        remedy = set_in_output('derivatives='//trim(merge('2', '1', index(name, '.alpha') > 0)))
+      end if
+    end associate
+  end subroutine find_remedy_of_link
 
   !> For forces of couplings.
   subroutine find_remedy_of_coupling(name, model, columns, remedy)

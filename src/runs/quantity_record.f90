@@ -68,6 +68,7 @@ contains
         tracked%take = quantity%take
         tracked%at = quantity%at
         call find_column(quantity, model, columns, tracked%column, err)
+        if (.not. allocated(err)) call check_pole(quantity, err)
         if (allocated(err)) return
         call columns%family_of(tracked%column, tracked%family, tracked%order)
         if (tracked%family(0) > 0) tracked%weights = columns%scales(tracked%column)/columns%scales(tracked%family)
@@ -81,6 +82,16 @@ contains
       call follow_changes(columns, self%tracked(i))
     end do
   end subroutine begin
+
+  !> Fail with exit_data where a quantity follows a velocity pole, which may go to infinity between outputs.
+  pure subroutine check_pole(quantity, err)
+    type(quantity_type), intent(in) :: quantity             !< the quantity
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+
+    if (index(quantity%column, '.pole.') == 0 .or. any(quantity%take == [character(len=5) :: 'start', 'end', 'at'])) return
+    call raise(err, exit_data, 'quantity '''//quantity%name//''' takes '''//quantity%take//''' of a velocity pole, which is at '// &
+               'infinity where the link does not turn; take ''start'', ''end'' or ''at''', quantity%place)
+  end subroutine check_pole
 
   !> Let a quantity follow the derivatives of its column by the parameters, where there are any.
   subroutine follow_changes(columns, tracked)

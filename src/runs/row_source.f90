@@ -13,10 +13,12 @@ module mech9_row_source
   use mech9_smooth_pieces, only: have_joints
   use mech9_sensitivity, only: sensitivity_type, find_waiting
   use mech9_columns, only: columns_type, kinematic_columns
+  use mech9_contact_columns, only: append_contacts, fill_contacts
   use mech9_result_units, only: unit_of_parameter
   use mech9_film, only: film_type
   use mech9_masks, only: numbers_of
   use mech9_force_record, only: force_record_type, reacting_pairs
+  use mech9_link_record, only: link_record_type
   use mech9_impact_record, only: impact_record_type, new_impact_record
   use mech9_varied_record, only: varied_record_type
   use mech9_quantity_record, only: quantity_record_type
@@ -28,6 +30,7 @@ module mech9_row_source
     class(simulation_type), pointer, private :: simulation => null()   !< not owned
     type(columns_type) :: columns
     type(force_record_type) :: forces      !< computes the forces that are recorded
+    type(link_record_type) :: links        !< computes the motion of links that is recorded
     class(sensitivity_type), allocatable :: sensitivity  !< finds derivatives by parameters, where it is allocated
     type(varied_record_type) :: varied     !< finds those of forces and energies
     type(film_type), allocatable :: film   !< takes the position of each row, where it is allocated
@@ -62,7 +65,8 @@ contains
     type(impact_record_type) :: impacts
 
     source%simulation => simulation
-    call find_columns(simulation%model, simulation%with_energies, simulation%with_error, source%columns, source%forces)
+    call find_columns(simulation%model, simulation%with_energies, simulation%with_error, source%columns, source%forces, &
+                      source%links)
     associate (model => simulation%model)
       if (.not. (model%request%output%reactions .and. model%mechanism%has_rigid_ends())) return
       call new_impact_record(model, numbers_of(reacting_pairs(model)), impacts)
@@ -71,21 +75,24 @@ contains
   end subroutine new_row_source
 
   !> The columns of a run. They are known before the mechanism is assembled.
-  subroutine find_columns(model, with_energies, with_error, columns, forces)
+  subroutine find_columns(model, with_energies, with_error, columns, forces, links)
     type(model_type), intent(in) :: model             !< the model
     logical, intent(in) :: with_energies              !< the energies are recorded
     logical, intent(in) :: with_error                 !< an estimated error is recorded
     type(columns_type), intent(out) :: columns        !< all but sensitivities
     type(force_record_type), intent(out) :: forces    !< computes the forces that are recorded
+    type(link_record_type), intent(out) :: links      !< computes the motion of links that is recorded
 
     columns = kinematic_columns(model%mechanism, model%request%output)
     call forces%begin(model, columns)
     call columns%append_motors(model%mechanism)
     if (with_energies) call columns%append_energies()
+    call forces%append_magnitudes(model, columns)
+    call links%begin(model%mechanism, model%request%output, columns)
     call columns%append_stops(model%mechanism)
     if (model%mechanism%has_frictions() .and. (model%request%output%with_forces() .or. .not. model%is_driven())) &
       call columns%append_frictions(model%mechanism, heats=.not. model%is_driven())
-    call columns%append_contacts(model%mechanism)
+    call append_contacts(columns, model%mechanism)
     call columns%append_in('closure', 'm', 'largest error of a closed chain')
     if (model%request%output%conditioning) call columns%append('conditioning', '1', 'least singular value of the worst chains')
     if (with_error) call columns%append('error', 'rad,m', 'estimated error of the coordinates and points')
@@ -343,9 +350,7 @@ contains
       call self%simulation%present_for_forces(force_plan, force_state)
       call self%forces%find(self%simulation, force_plan, force_state, err)
       if (allocated(err)) return
-      associate (found => self%forces%reactions)
-        call self%columns%fill_forces(found%needed, found%force, found%moment, found%couplings%values, row)
-      end associate
+      call self%forces%fill(self%columns, self%simulation%model%mechanism, force_plan, force_state, row)
     end if
     call self%columns%fill_motors(self%simulation%model%mechanism, state, row, err)
     if (allocated(err)) return
@@ -355,12 +360,12 @@ contains
         row(next + 1) = simulation%kinetic_energy
         row(next + 2) = simulation%potential_energy
         row(next + 3) = simulation%kinetic_energy + simulation%potential_energy
-        next = next + 3
       end if
+      call self%links%fill(plan, state, row)
       call self%columns%fill_stops(simulation%model%mechanism, state, row)
       call self%columns%fill_frictions(simulation%model%mechanism, state, row)
-      call self%columns%fill_contacts(simulation%model%mechanism, plan, state, row)
-      next = next + self%columns%stops + self%columns%frictions + self%columns%contacts + 1
+      call fill_contacts(self%columns, simulation%model%mechanism, plan, state, row)
+      next = self%columns%before_stops() + self%columns%stops + self%columns%frictions + self%columns%contacts + 1
       row(next) = simulation%closure
       if (simulation%with_conditioning) then
         next = next + 1
@@ -374,7 +379,7 @@ contains
       if (allocated(err)) return
       if (self%sensitivity%waiting > 0) call self%simulation%keep_counts(self%sensitivity%waiting)
       if (.not. self%varied%wanted) return
-      call self%varied%find(self%simulation, self%columns, err)
+      call self%varied%find(self%simulation, self%columns, self%forces, self%links, err)
       if (allocated(err)) return
       call self%columns%fill_beyond_motion(self%varied%values, row)
       if (size(self%varied%poses) > 0) call self%columns%fill_varied_poses(self%varied%poses, row)

@@ -128,7 +128,7 @@ contains
     if (options%has('quiet') .or. .not. model%request%output%with_forces()) return
     call print_forceless(error_unit, model%mechanism)
     if (allocated(forces%unique)) &
-      call print_undetermined(error_unit, reacting_pairs(model), forces%unique)
+      call print_undetermined(error_unit, reacting_pairs(model), forces%unique, model%request%output%reactions_in_links)
   end subroutine judge_forces
 
   !> Write table, HDF5 file, and file of matrices.
@@ -316,7 +316,7 @@ contains
     call json%end_array()
     if (options%has('modes') .and. size(list) > 0) call add_modes(json, list(1))
     if (allocated(forces%unique)) &
-      call add_uniqueness(json, reacting_pairs(model), forces%unique)
+      call add_uniqueness(json, reacting_pairs(model), forces%unique, model%request%output%reactions_in_links)
     call json%end_object()
     call json%save(options%argument('report'), err)
   end subroutine save_report

@@ -146,7 +146,8 @@ contains
     if (.not. options%has('quiet')) call print_quantities(error_unit, source%quantities)
     call results%print_words(error_unit, options%has('quiet'))
     if (allocated(source%forces%unique) .and. .not. options%has('quiet')) &
-      call print_undetermined(error_unit, reacting_pairs(model), source%forces%unique)
+      call print_undetermined(error_unit, reacting_pairs(model), source%forces%unique, &
+                              model%request%output%reactions_in_links)
     ! an interrupted program makes no pictures, which would take too long
     if (asked_to_end()) return
     if (allocated(source%film)) call draw(options, pictures, model, source%film, diagnostics)

@@ -39,7 +39,7 @@ def names_of(table):
     known = dict(FUNCTIONS)
     for column, values in table.items():
         known[column.replace('.', '_')] = values
-        if column.endswith('.x'):
+        if column.endswith('.x') and column[:-2] + '.z' in table:
             point = column[:-2]
             known[point] = tuple(table[f'{point}.{axis}'] for axis in 'xyz')
     return known

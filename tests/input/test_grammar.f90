@@ -100,7 +100,7 @@ contains
     call tester%is_true(row%help /= '' .and. len_trim(row%help) < len(row%help), label(row)//': the help fits its field')
     call tester%is_true(len_trim(row%default) < len(row%default) .and. len_trim(row%example) < len(row%example), &
                         label(row)//': default and example fit their fields')
-    call tester%is_true(all(len_trim([character(len=20) :: row%group, row%name, row%type, row%unit, row%range]) < &
+    call tester%is_true(all(len_trim([character(len=21) :: row%group, row%name, row%type, row%unit, row%range]) < &
                             [len(row%group), len(row%name), len(row%type), len(row%unit), len(row%range)]), &
                         label(row)//': group, name, type, unit and range fit their fields')
     call tester%is_true(len_trim(row%words) < len(row%words) .and. len_trim(row%kinds) < len(row%kinds), &

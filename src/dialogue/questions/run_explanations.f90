@@ -205,6 +205,17 @@ module mech9_run_explanations
     explanation_type('output', 'acceleration_arrows', '', &
                   'Drawing and film then show the acceleration of each point as an arrow; the longest arrow is the largest '// &
                   'acceleration.', 'yes'), &
+    explanation_type('output', 'links', '', &
+                  'The results then tell how these links turn: in a plane by an angle, its rate and its acceleration; in '// &
+                  'space by four numbers of a quaternion, angular velocity and angular acceleration.', '2, 3'), &
+    explanation_type('output', 'poles', '', &
+                  'The results then hold the velocity poles of these links: the points about which they turn at each '// &
+                  'moment.', '3'), &
+    explanation_type('output', 'reaction_magnitudes', '', &
+                  'The results then hold how large the force and the moment in each pair are, beside their components.', 'yes'), &
+    explanation_type('output', 'reaction_axes', '', &
+                  'With link, forces and moments in the pairs are given along the axes of the moving link, as for polar '// &
+                  'diagrams of pins; with fixed, along those of link 1.', 'link'), &
     explanation_type('output', 'sensitivities', '', &
                   'The results then hold how each recorded number changes with each &parameter, as derivatives.', 'yes'), &
     explanation_type('output', 'gradients', '', &

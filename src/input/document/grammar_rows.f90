@@ -54,7 +54,7 @@ contains
     kind = 0
     if (group == 'mechanism' .or. group == 'link') return
     select case (name)
-    case ('link', 'links', 'follower', 'nrg')
+    case ('link', 'links', 'poles', 'follower', 'nrg')
       kind = refers_to_link
     case ('coordinate', 'coordinates', 'guide', 'reaction_pairs', 'cq', 'nws')
       if (group /= 'pair') kind = refers_to_coordinate

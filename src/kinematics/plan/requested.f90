@@ -3,6 +3,8 @@ module mech9_requested
   use mech9_kinds, only: wp
   use mech9_request, only: output_settings_type
   use mech9_mechanism, only: mechanism_type
+  use mech9_turning_plane, only: turning_plane_type
+  use mech9_link_way, only: link_way_type, find_ways
   use mech9_plan, only: plan_type, block_type
   implicit none
   private
@@ -33,12 +35,31 @@ contains
     if (present(pictures)) whole = pictures
     allocate (requested%links(mechanism%structure%n_links), source=whole .or. output%poses)
     requested%links(mechanism%points%link) = .true.
+    if (allocated(output%links)) call request_turning(mechanism, output, requested)
     requested%derivatives = merge(2, output%derivatives, whole)
     ! derivatives by parameters follow from the motion of all frames
     requested%motions = output%sensitivities
     requested%frames = output%sensitivities
     if (output%with_forces()) call request_all(requested)
   end function requested_by_results
+
+  !> Request the links whose turning motion is recorded, and the coordinates on the ways to them, which count their whole turns.
+  pure subroutine request_turning(mechanism, output, requested)
+    type(mechanism_type), intent(in) :: mechanism      !< the mechanism
+    type(output_settings_type), intent(in) :: output   !< the settings of the results
+    type(requested_type), intent(inout) :: requested   !< the requested coordinates and links
+    type(turning_plane_type) :: plane
+    type(link_way_type), allocatable :: ways(:)
+    integer :: i
+
+    requested%links(output%links) = .true.
+    requested%links(output%poles) = .true.
+    allocate (plane%normal(3, 0))
+    call find_ways(mechanism%structure, mechanism%pairs, output%links, plane, ways)
+    do i = 1, size(ways)
+      requested%coordinates(ways(i)%coordinates()) = .true.
+    end do
+  end subroutine request_turning
 
   !> Request the motion of all links and coordinates: a force may come from any of them.
   pure subroutine request_all(requested)

@@ -52,6 +52,10 @@ module mech9_request
     logical :: force_arrows = .false.            !< pictures show the forces in pairs as arrows
     logical :: velocity_arrows = .false.         !< pictures show the velocities of the points as arrows
     logical :: acceleration_arrows = .false.     !< pictures show their accelerations as arrows
+    integer, allocatable :: links(:)             !< links whose turning motion has columns
+    integer, allocatable :: poles(:)             !< links whose velocity poles have columns
+    logical :: reaction_magnitudes = .false.     !< the magnitudes of the wrenches of pairs have columns
+    logical :: reactions_in_links = .false.      !< the wrenches are along the axes of the moving links; else of link 1
   contains
     procedure :: recorded
     procedure :: reacting

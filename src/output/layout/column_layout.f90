@@ -6,7 +6,7 @@ module mech9_column_layout
   use mech9_scale_layout, only: find_common_unit
   implicit none
   private
-  public :: column_layout_type
+  public :: column_layout_type, identifier
 
   !> How columns become data sets.
   type :: column_layout_type
@@ -123,8 +123,11 @@ contains
     type(column_set_list_type), intent(inout) :: list   !< gets the data sets
     type(columns_type), intent(in) :: columns         !< columns of the rows to come
     character(len=:), allocatable :: unit
+    character(len=:), allocatable :: axes
     integer :: n, at, i, k
 
+    axes = 'the fixed frame'
+    if (columns%in_links) axes = 'the axes of the moving links'
     n = size(columns%drives)
     at = columns%motion
     call find_common_unit(columns%units(at + 1:at + n), unit)
@@ -135,11 +138,12 @@ contains
     if (n == 0) return
     call self%add_one(list, columns, new_column_set('reaction_force', [((at + 6*(i - 1) + k, k=1, 3), i=1, n)], [3, n], &
                                                     'forces that the reference links pass to the moving links through the '// &
-                                                    'pairs, in the fixed frame', trim(columns%system%force_name), &
+                                                    'pairs, in '//axes, trim(columns%system%force_name), &
                                                     ['/pair', '/axis']))
     call self%add_one(list, columns, new_column_set('reaction_moment', [((at + 6*(i - 1) + 3 + k, k=1, 3), i=1, n)], [3, n], &
                                                     'moments that they pass, about the origins of the pairs'' frames in the '// &
-                                                    'moving links', trim(columns%system%name_of('N m')), ['/pair', '/axis']))
+                                                    'moving links, in '//axes, trim(columns%system%name_of('N m')), &
+                                                    ['/pair', '/axis']))
     at = at + 6*n
     n = columns%couplings
     call find_common_unit(columns%units(at + 1:at + n), unit)

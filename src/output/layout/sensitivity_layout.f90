@@ -3,13 +3,14 @@ module mech9_sensitivity_layout
   use mech9_columns, only: columns_type
   use mech9_data_set_store, only: data_set_store_type
   use mech9_column_sets, only: column_set_list_type, new_column_set
+  use mech9_column_layout, only: identifier
   implicit none
   private
   public :: add_sensitivities, put_parameters
 
 contains
 
-  !> Add the derivatives of coordinates, points, forces, motors and energies. The parameter is the last dimension.
+  !> Add the derivatives of coordinates, points, forces, motors, energies and links. The parameter is the last dimension.
   subroutine add_sensitivities(list, columns)
     type(column_set_list_type), intent(inout) :: list   !< the data sets over the rows
     type(columns_type), intent(in) :: columns         !< columns of the rows to come
@@ -87,18 +88,17 @@ contains
     places = columns%derivatives_of(column)
   end function places
 
-  !> Add the derivatives of motors and energies.
+  !> Add the derivatives of motors, energies, magnitudes and links.
   subroutine add_scalars(list, columns)
     type(column_set_list_type), intent(inout) :: list   !< the data sets over the rows
     type(columns_type), intent(in) :: columns         !< columns of the rows to come
     character(len=:), allocatable :: unit
-    integer :: i, point
+    integer :: i
 
-    do i = columns%varied + 2 - columns%energies - columns%motors, columns%varied + 1
+    do i = columns%motion + columns%forces() + 1, columns%varied + 1
       associate (name => columns%names(i)%text)
-        point = index(name, '.')
         call find_unit(columns, i, 1, unit)
-        call list%add(new_column_set('sensitivity/'//name(:point - 1)//'_'//name(point + 1:), places(columns, i), &
+        call list%add(new_column_set('sensitivity/'//identifier(name), places(columns, i), &
                                      [size(columns%parameters)], &
                                      'derivatives of the '//columns%long_names(i)%text//' by the parameters', &
                                      unit, ['/time     ', '/parameter']))

@@ -3,6 +3,7 @@ module mech9_check_text
   use mech9_model, only: model_type
   use mech9_part_names, only: name_in
   use mech9_result_units, only: unit_of
+  use mech9_turning_plane, only: turning_plane_type, find_turning_plane
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_start_path, only: start_way_type
@@ -14,7 +15,8 @@ module mech9_check_text
   use mech9_stop_text, only: print_stops
   use mech9_friction_text, only: print_frictions
   use mech9_contact_text, only: print_contacts
-  use mech9_force_text, only: print_uniqueness, print_forceless
+  use mech9_turning_text, only: print_turning
+  use mech9_force_text, only: print_uniqueness, print_forceless, print_across
   use mech9_force_record, only: force_record_type, reacting_pairs
   implicit none
   private
@@ -55,6 +57,7 @@ contains
     call print_stops(unit, model%mechanism, start)
     call print_frictions(unit, model%mechanism)
     call print_contacts(unit, model%mechanism, plan, start)
+    call print_turning(unit, model)
     call print_forces(unit, model, plan, start)
   end subroutine print_start
 
@@ -74,11 +77,14 @@ contains
     type(plan_type), intent(in) :: plan     !< its plan
     type(state_type), intent(in) :: start   !< assembled position
     type(force_record_type) :: forces
+    type(turning_plane_type) :: plane
 
     if (.not. model%request%output%with_forces()) return
     call print_forceless(unit, model%mechanism)
     call forces%judge(model, plan, start)
-    if (allocated(forces%unique)) &
-      call print_uniqueness(unit, reacting_pairs(model), forces%unique)
+    if (.not. allocated(forces%unique)) return
+    call print_uniqueness(unit, reacting_pairs(model), forces%unique, model%request%output%reactions_in_links)
+    call find_turning_plane(model%mechanism%structure, model%mechanism%pairs, plane)
+    if (plane%found) call print_across(unit, plane%normal(:, 1), reacting_pairs(model), forces%unique)
   end subroutine print_forces
 end module mech9_check_text

@@ -131,22 +131,31 @@ contains
     integer :: unit
 
     recorded = [.true., .false., .true.]
-    allocate (unique%pairs(6, 3), source=.true.)
+    allocate (unique%pairs(6, 3), unique%fixed(6, 3), unique%moving(6, 3), source=.true.)
     allocate (unique%couplings(0))
     open (newunit=unit, file=path)
-    call print_uniqueness(unit, recorded, unique)
-    call print_undetermined(unit, recorded, unique)
+    call print_uniqueness(unit, recorded, unique, .false.)
+    call print_undetermined(unit, recorded, unique, .false.)
     call text_of_unit(tester, unit, text)
     call tester%is_true(text == 'forces and moments in the pairs: equilibrium determines all components'//eol, 'all: '//text)
     unique%pairs(3:4, 3) = .false.
     unique%pairs(1, 2) = .false.
+    unique%fixed(1:2, 3) = .false.
+    unique%fixed(1, 2) = .false.
+    unique%moving(6, 3) = .false.
     open (newunit=unit, file=path)
-    call print_uniqueness(unit, recorded, unique)
-    call print_undetermined(unit, recorded, unique)
+    call print_uniqueness(unit, recorded, unique, .false.)
+    call print_undetermined(unit, recorded, unique, .false.)
     call text_of_unit(tester, unit, text)
-    call tester%is_true(index(text, '  pair 3: force along z, moment about x'//eol) > 0, 'two components: '//text)
+    call tester%is_true(index(text, '  pair 3: force along z, moment about x; columns R3.fx R3.fy'//eol) > 0, &
+                        'two components: '//text)
     call tester%is_true(index(text, 'pair 2') == 0, 'a pair that is not recorded is not told: '//text)
-    call tester%is_true(index(text, 'equilibrium does not determine 2 of the 12 components') > 0, 'their number')
+    call tester%is_true(index(text, 'equilibrium does not determine 2 of the 12 components of forces and moments in the pairs: '// &
+                              'R3.fx R3.fy; ') > 0, 'their columns: '//text)
+    open (newunit=unit, file=path)
+    call print_undetermined(unit, recorded, unique, .true.)
+    call text_of_unit(tester, unit, text)
+    call tester%is_true(index(text, 'in the pairs: R3.mz; ') > 0, 'along the axes of the moving link: '//text)
     call tester%is_true(all(component_names == ['fx', 'fy', 'fz', 'mx', 'my', 'mz']), 'names of components')
   end subroutine forces
 
