@@ -109,3 +109,29 @@ def test_films_without_columns_or_frames(checks, browser, build, tmp_path):
     browser.open(tmp_path / 'fig1.html')
     checks.equal(browser.value('document.getElementById("columns").value'), 'q1,q2,q3', 'some coordinates where --plot names none')
     checks.equal((browser.value('document.querySelectorAll("#plot .line").length'), browser.errors), (3, []), 'a curve for each')
+
+
+def test_units_and_names_of_the_file(checks, browser, build, tmp_path):
+    """The scale of the page is in the unit of length of the file, and columns of --plot may have names of pairs."""
+    text = text_of(example('slider_crank')).replace("coordinates = 4\n/", "coordinates = 4, length_unit='mm'\n/", 1)
+    for number in ('0.3', '0.1', '1.2', '0.05'):
+        text = text.replace(f'point={number},', f'point={1000 * float(number):g},').replace(f'position={number} ', f'position={1000 * float(number):g} ')
+    text = text.replace('point=1,0,0', 'point=1000,0,0').replace('point=0,0.1,0', 'point=0,100,0').replace(
+        'position=0.5,0.05,0', 'position=500,50,0').replace("coordinate=4, links=1,4,", "coordinate=4, links=1,4, name='slide',")
+    (tmp_path / 'mm.nml').write_text(text, encoding='utf-8')
+    done = run(build.program('mech9k'), 'mm.nml', '--quiet', '--table', 'mm.dat', '--plot', 'a.svg:slide.q,B.x', '--animate', 'mm.html',
+               folder=tmp_path)
+    checks.equal(done.returncode, 0, done.stderr)
+    rows = read_table(text_of(tmp_path / 'mm.dat'))
+    checks.true(1000 < rows['q4'].max() < 1400, 'the slide is at more than a metre', rows['q4'].max())
+    browser.resize(width=1300, height=900, still=True)
+    browser.open(tmp_path / 'mm.html')
+    checks.equal(browser.value('document.getElementById("columns").value'), 'q4,B.x', 'the column of the pair')
+    words = browser.value('document.querySelector("#scale text").textContent').split()
+    bar = browser.value('Number(document.querySelector("#scale path").getAttribute("d").match(/h([^v]+)v/)[1])')
+    checks.equal(words[1], 'mm', 'the unit of the scale')
+    # two pairs of the picture, whose distance is the radius of the crank
+    places = [browser.value(f"""(() => {{ const m = document.querySelector('[data-joint="{name}"]').transform.baseVal[0].matrix;
+                               return [m.e, m.f]; }})()""") for name in ('q1', 'q2')]
+    checks.near(np.hypot(*np.subtract(*places)) / bar * float(words[0]), 300, 2e-3, 'the radius of the crank by the scale')
+    checks.equal(browser.errors, [], 'nothing on the console')

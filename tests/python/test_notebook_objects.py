@@ -33,10 +33,12 @@ def test_table(checks, shown, four_bar):
     checks.equal((page.errors, page.requests[1:]), ([], []), 'the console is empty, and nothing is loaded')
 
 
-@pytest.mark.parametrize('kind', ('html', 'gif', 'svg'))
+@pytest.mark.parametrize('kind', ('html', 'gif', 'svg', 'mp4'))
 def test_film(checks, shown, four_bar, kind):
+    if kind == 'mp4' and not checks.has('ffmpeg', 'ffmpeg'):
+        pytest.skip(checks.missing[-1])
     page = shown(four_bar.kinematics().animate(kind))
-    element = {'html': 'iframe', 'gif': 'img', 'svg': 'svg'}[kind]
+    element = {'html': 'iframe', 'gif': 'img', 'svg': 'svg', 'mp4': 'video'}[kind]
     checks.true(page.value(f"document.querySelector('#output {element}').getBoundingClientRect().height") > 100, f'{kind}: the film is visible')
     if kind == 'gif':
         checks.true(page.value("document.querySelector('#output img').naturalWidth") > 100, 'gif: the picture is whole')
