@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from kinematic_derivatives import STEP, WEIGHTS, Case
-from mech9_cases import read_table, run
+from mech9_cases import TREE, read_table, run, text_of
 
 A, B, C, D = 0.04, 0.12, 0.08, 0.1      # Norton, example 6-7: crank, coupler, rocker, ground [m]
 SPEED = 25.0                            # [rad/s]
@@ -257,6 +257,27 @@ def test_quaternions_have_no_jumps(case):
         expected = np.array([-np.sum(omega * e[1:], axis=0), *(e[0] * omega + np.cross(omega.T, e[1:].T).T)]) / 2
         # central differences at 5e-5 s; rates change by up to 30 a second
         case.checks.near(rate, expected, 1e-5, f'link {link}: rates of the quaternion', scale=np.abs(expected).max())
+
+
+def test_quaternions_pass_gimbal_lock(case):
+    """The heavy top of the gallery falls through the gimbal lock of its hinges, whose angles jump there; its quaternion does not."""
+    text = text_of(os.path.join(TREE, 'examples', 'heavy_top', 'heavy_top.nml')).replace('&output', '&output links=4,')
+    table = columns_of(case, text, '--set', 'time.intervals=20000', program=case.mech9d)
+    e = np.array([table[f'L4.e{i}'] for i in range(4)])
+    omega = np.array([table[f'L4.w{axis}'] for axis in 'xyz'])
+    # |de| <= |omega| dt/2
+    bound = 0.5 * np.linalg.norm(omega, axis=0).max() * (table['t'][1] - table['t'][0])
+    case.checks.true(np.linalg.norm(np.diff(e), axis=0).max() <= 1.1 * bound, 'no jumps', np.abs(np.diff(e)).max())
+
+
+def test_one_instant(case):
+    """&time at= gives one row: that of a run which is there at this time. It counts before start, end and intervals."""
+    whole = columns_of(case, NORTON.format(guess=-20).replace('end=0.7, intervals=140', 'end=0.02, intervals=1'))
+    for text in (NORTON.format(guess=-20).replace('start=0, end=0.7, intervals=140', 'at=0.02'), NORTON.format(guess=-20)):
+        one = columns_of(case, text, *(() if 'at=' in text else ('--set', 'time.at=0.02')))
+        case.checks.equal(one['t'].tolist(), [0.02], 'one row')
+        for name in ('q1', 'L3.phi', 'L3.omega', 'L4.alpha', 'L3.pole.x'):
+            case.checks.near(one[name][0], whole[name][1], 1e-10, name, scale=abs(whole[name][1]))
 
 
 def against_runs(case, text, parameters, program=None, tolerance=2e-9, prefixes=('L', 'R'), relative_step=STEP):
