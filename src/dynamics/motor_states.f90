@@ -47,6 +47,7 @@ contains
     motion%q = state%q(motor%coordinate)
     motion%dq = state%dq(motor%coordinate)
     motion%ddq = state%ddq(motor%coordinate)
+    if (allocated(motor%over)) call motor%over%follow(state%q, state%dq, state%ddq, motion%x, motion%dx, motion%ddx)
     motion%steady = .not. allocated(state%motor)
     if (motion%steady) return
     motion%value = state%motor(i)

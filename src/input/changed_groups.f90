@@ -47,7 +47,20 @@ contains
     do i = 1, size(document%groups)
       if (map%place(i) > 0) map%is_alone(i) = can_be_read_alone(document%groups(i))
     end do
+    ! laws over points, and contacts, keep the places of these
+    do i = 1, size(document%groups)
+      if (document%groups(i)%name == 'point' .and. any(keeps_point(document%groups))) map%is_alone(i) = .false.
+    end do
   end subroutine map_groups
+
+  !> Whether what is read from a group keeps the place of a point.
+  elemental logical function keeps_point(group)
+    type(group_type), intent(in) :: group   !< a group
+
+    keeps_point = group%name == 'contact'
+    if (group%name /= 'load' .or. .not. group%sound) return
+    if (has_name(group, 'over')) keeps_point = index(get_text(group, 'over'), '.') > 0
+  end function keeps_point
 
   !> Whether a group can be read again without the whole document.
   pure logical function can_be_read_alone(group) result(alone)

@@ -1,10 +1,10 @@
-!> Drives from the groups &drive of a checked document, and laws of time for other groups.
+!> Drives from the groups &drive of a checked document, and laws of time, or over another variable, for other groups.
 module mech9_drive_reader
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: string_type, to_text
   use mech9_counted, only: counted
-  use mech9_spline, only: build_spline
+  use mech9_spline, only: build_spline, build_periodic_spline
   use mech9_explanation, only: explain
   use mech9_partition, only: partition_type, driven_coordinate
   use mech9_pair, only: pair_slot_type
@@ -17,6 +17,8 @@ module mech9_drive_reader
   use mech9_table_law, only: table_law_type
   use mech9_cam_curves, only: curve_number
   use mech9_segments_law, only: segments_law_type
+  use mech9_law_over, only: law_over_type
+  use mech9_result_units, only: unit_of, unit_name, rate_unit_of, rate_unit_name
   use mech9_procedure_drive, only: procedure_drive_type, make_procedure_drive
   use mech9_source, only: span_type
   use mech9_document, only: document_type, group_type, item_type
@@ -25,10 +27,19 @@ module mech9_drive_reader
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
-  public :: read_drives, read_drive_group, read_law, files_of_groups, units_of_coordinate
+  public :: read_drives, read_drive_group, read_law, read_law_over, is_over, files_of_groups, units_of_coordinate
 
   !> A period is that of the segments where it differs by no more than this part.
   real(wp), parameter :: same_period = 1.0e-9_wp
+  !> The last value of a law is its first where it differs by no more than this part of the largest one: files round.
+  real(wp), parameter :: same_value = 1.0e-9_wp
+
+  !> A variable of laws by its name and its unit. A law that repeats may advance by the difference of its ends, as setpoints do.
+  type :: law_variable_type
+    character(len=80) :: name = 't'
+    character(len=8) :: unit = 's'
+    logical :: advances = .false.
+  end type law_variable_type
 
 contains
 
@@ -113,23 +124,27 @@ contains
                            to_text(size(partition%kind)))
   end subroutine check_coordinate
 
-  !> A law of time by the names of a group, in SI; it stays unallocated where an error was reported, and for a constant.
-  subroutine read_law(document, group, name, unit, law, diagnostics)
+  !> A law of time by the names of a group, in SI, or over another variable, which counts in units of the file; it stays
+  !> unallocated where an error was reported, and for a constant.
+  subroutine read_law(document, group, name, unit, law, diagnostics, over)
     type(document_type), intent(in) :: document           !< the data file as groups and items
     type(group_type), intent(in) :: group                 !< the group of the data file
     character(len=*), intent(in) :: name                  !< of the law
     type(coordinate_units_type), intent(in) :: unit       !< units of the law's values and rates in the file
     class(law_type), allocatable, intent(out) :: law      !< the law
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+    type(law_variable_type), intent(in), optional :: over !< its variable; the time unless given
     type(polynomial_law_type) :: polynomial
     type(harmonic_law_type) :: harmonic
     real(wp), allocatable :: given(:)
+    type(law_variable_type) :: variable
 
+    if (present(over)) variable = over
     select case (name)
     case ('polynomial')
       given = get_reals(group, 'coefficients')
       polynomial%coefficients = unit%position*given
-      if (size(given) > 1) polynomial%coefficients(2) = unit%rate*given(2)
+      if (size(given) > 1 .and. .not. present(over)) polynomial%coefficients(2) = unit%rate*given(2)
       allocate (law, source=polynomial)
     case ('harmonic')
       harmonic%mean = unit%position*get_real(group, 'mean')
@@ -138,29 +153,153 @@ contains
       harmonic%phase = get_real(group, 'phase')
       allocate (law, source=harmonic)
     case ('table')
-      call read_table(document, group, unit%position, law, diagnostics)
+      call read_table(document, group, unit%position, variable, law, diagnostics)
     case ('segments')
-      call read_segments(group, unit%position, law, diagnostics)
+      call read_segments(group, unit%position, variable, law, diagnostics)
     end select
+    if (.not. (allocated(law) .and. present(over))) return
+    law%variable = variable%name
+    law%variable_unit = variable%unit
   end subroutine read_law
 
+  !> Whether a group has a law over another variable than the time.
+  pure logical function is_over(group)
+    type(group_type), intent(in) :: group  !< a group with a name `over`
+
+    is_over = has_name(group, 'over')
+    if (is_over) is_over = get_text(group, 'over') /= 't'
+  end function is_over
+
+  !> The law of a load or of a motor over a coordinate, a rate or a component of a point. It stays unallocated where an error was
+  !> reported, and for a constant.
+  subroutine read_law_over(document, group, mechanism, unit, over, diagnostics, advances)
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    type(mechanism_type), intent(in) :: mechanism         !< with its pairs and points; none where they are not known
+    type(coordinate_units_type), intent(in) :: unit       !< units of the law's values in the file
+    type(law_over_type), allocatable, intent(out) :: over !< the law with its variable
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+    logical, intent(in) :: advances                       !< a law that repeats may end elsewhere than it begins
+    type(law_over_type) :: found
+    type(law_variable_type) :: variable
+    integer :: known
+
+    if (.not. (has_name(group, 'law') .and. size(mechanism%pairs) > 0)) return
+    if (get_text(group, 'law') == 'constant') return
+    known = diagnostics%known()
+    variable%advances = advances
+    variable%name = get_text(group, 'over')
+    call find_variable(group, mechanism, found, variable%unit, diagnostics)
+    if (diagnostics%known() > known) return
+    call read_law(document, group, get_text(group, 'law'), unit, found%law, diagnostics, variable)
+    if (.not. allocated(found%law)) return
+    select type (law => found%law)
+    type is (harmonic_law_type)
+      ! an angle for each unit of the variable, and not for each second
+      law%angular_frequency = law%angular_frequency*mechanism%units%angle/mechanism%units%rate
+    end select
+    over = found
+  end subroutine read_law_over
+
+  !> Find the variable of a law by its name, which is that of a column of the results. Accelerations follow from forces and cannot
+  !> decide them.
+  subroutine find_variable(group, mechanism, over, unit, diagnostics)
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    type(mechanism_type), intent(in) :: mechanism         !< with its pairs and points
+    type(law_over_type), intent(inout) :: over            !< gets its variable
+    character(len=*), intent(out) :: unit                 !< name of its unit in the file
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+    character(len=:), allocatable :: name
+    integer :: derivative, dot, i
+
+    unit = ''
+    name = get_text(group, 'over')
+    derivative = verify(name//'q', 'd') - 1
+    dot = index(name, '.', back=.true.)
+    if (dot > 0) then
+      call find_component(name, mechanism, over, unit, derivative)
+    else if (index(name, repeat('d', derivative)//'q') == 1) then
+      do i = 1, size(mechanism%pairs)
+        if (name(derivative + 2:) /= to_text(i)) cycle
+        over%coordinate = i
+        over%is_rate = derivative == 1
+        if (.not. allocated(mechanism%pairs(i)%pair)) return
+        over%unit = unit_of(mechanism, i)
+        unit = unit_name(mechanism, i)
+        if (over%is_rate) over%unit = rate_unit_of(mechanism, i)
+        if (over%is_rate) unit = rate_unit_name(mechanism, i)
+        if (unit(1:1) == '1') unit = ''
+      end do
+    end if
+    if (over%coordinate == 0 .and. over%link == 0) then
+      call diagnostics%add(span_of(group, 'over', 1), 'there is no variable '''//name//'''; a law is over t, a coordinate '// &
+                           '(q1 to q'//to_text(size(mechanism%pairs))//'), a rate (as dq1), or the position or velocity of a '// &
+                           '&point (as P.x, P.vx)')
+    else if (derivative > 1) then
+      call diagnostics%add(span_of(group, 'over', 1), 'accelerations follow from the forces, so that no force can be over '// &
+                           name//'; give a coordinate, a rate, or the position or velocity of a point')
+    end if
+  end subroutine find_variable
+
+  !> Find a component of a point by the name of its column.
+  pure subroutine find_component(name, mechanism, over, unit, derivative)
+    character(len=*), intent(in) :: name               !< as P.vx
+    type(mechanism_type), intent(in) :: mechanism      !< with its points
+    type(law_over_type), intent(inout) :: over         !< gets the point and the direction; stays as it is where there is none
+    character(len=*), intent(inout) :: unit            !< gets the name of its unit
+    integer, intent(out) :: derivative                 !< 0 for a position, 1 for a velocity, 2 for an acceleration
+    character(len=2), parameter :: orders(0:2) = ['  ', 'v ', 'a ']
+    integer :: dot, i, k, order
+
+    dot = index(name, '.', back=.true.)
+    derivative = 0
+    do i = 1, size(mechanism%points)
+      if (mechanism%points(i)%name /= name(:dot - 1)) cycle
+      do order = 0, 2
+        k = index('xyz', name(len(name):))
+        if (k == 0 .or. name(dot + 1:len(name) - 1) /= trim(orders(order))) cycle
+        over%link = mechanism%points(i)%link
+        over%position = mechanism%points(i)%position
+        over%direction = 0.0_wp
+        over%direction(k) = 1.0_wp
+        over%is_rate = order == 1
+        derivative = order
+        over%unit = mechanism%units%length
+        unit = mechanism%units%name_of(trim(merge('m/s', 'm  ', order == 1)))
+      end do
+    end do
+  end subroutine find_component
+
   !> A law through the points of a file.
-  subroutine read_table(document, group, unit, law, diagnostics)
+  subroutine read_table(document, group, unit, variable, law, diagnostics)
     type(document_type), intent(in) :: document           !< the data file as groups and items
     type(group_type), intent(in) :: group                 !< the group of the data file
     real(wp), intent(in) :: unit                          !< unit of the law's values in the file [rad, m or 1]
+    type(law_variable_type), intent(in) :: variable       !< the variable of the law
     class(law_type), allocatable, intent(inout) :: law    !< gets the law; stays unallocated where an error was reported
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(table_law_type) :: table
     type(error_type), allocatable :: err
     real(wp), allocatable :: points(:, :)
     type(span_type) :: span
+    integer :: known
     logical :: ok
 
+    known = diagnostics%known()
     span = span_of(group, 'file', 1)
-    call read_table_file(beside(document%source%name, get_text(group, 'file')), span, 't', 'q', points, ok, diagnostics)
+    call read_table_file(beside(document%source%name, get_text(group, 'file')), span, trim(variable%name), &
+                         trim(merge('q     ', 'factor', variable%name == 't')), points, ok, diagnostics)
     if (.not. ok) return
-    call build_spline(points(1, :), unit*points(2, :), table%spline, err)
+    table%repeats = has_name(group, 'period')
+    if (table%repeats) then
+      call check_period(group, points(1, :), 'the table lasts', 'lengthen the table, with its first value at the end', variable, &
+                        diagnostics)
+      if (.not. variable%advances) call check_return(span, points(2, :), 'the table', variable, diagnostics)
+      if (diagnostics%known() > known) return
+      call build_periodic_spline(points(1, :), unit*points(2, :), table%spline, err)
+    else
+      call build_spline(points(1, :), unit*points(2, :), table%spline, err)
+    end if
     if (allocated(err)) then
       call explain(err)
       call diagnostics%add(span, err%message, err%code)
@@ -169,10 +308,26 @@ contains
     end if
   end subroutine read_table
 
+  !> Report a law that repeats and jumps back to its first value.
+  pure subroutine check_return(span, values, name, variable, diagnostics)
+    type(span_type), intent(in) :: span                   !< place of the values in the data file
+    real(wp), intent(in) :: values(:)                     !< of the law, in its order
+    character(len=*), intent(in) :: name                  !< of that which gives the values
+    type(law_variable_type), intent(in) :: variable       !< the variable of the law
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+
+    associate (first => values(1), last => values(size(values)))
+      if (abs(last - first) <= same_value*maxval(abs(values))) return
+      call diagnostics%add(span, name//' repeats, and would jump from '//to_text(last)//' back to '//to_text(first)//' over '// &
+                           trim(variable%name)//'; give the first value at the end again')
+    end associate
+  end subroutine check_return
+
   !> A law in segments.
-  subroutine read_segments(group, unit, law, diagnostics)
+  subroutine read_segments(group, unit, variable, law, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
     real(wp), intent(in) :: unit                          !< unit of the law's values in the file [rad, m or 1]
+    type(law_variable_type), intent(in) :: variable       !< the variable of the law
     class(law_type), allocatable, intent(inout) :: law    !< gets the law; stays unallocated where an error was reported
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(segments_law_type) :: segments
@@ -192,7 +347,12 @@ contains
     if (count_values(group, 'laws') /= n .and. count_values(group, 'laws') /= 1) &
       call diagnostics%add(span_of(group, 'laws'), 'there are '//to_text(count_values(group, 'laws'))//' laws for '// &
                            counted(n, 'segment')//'; give one for each segment, or one for all')
-    if (has_name(group, 'period')) call check_period(group, segments%times, diagnostics)
+    if (has_name(group, 'period')) then
+      call check_period(group, segments%times, 'the segments last', 'add a segment, for instance a dwell', variable, diagnostics)
+      ! the times of jumps are known before, the places are not
+      if (variable%name /= 't' .and. .not. variable%advances) &
+        call check_return(span_of(group, 'values'), segments%values/unit, 'the law in segments', variable, diagnostics)
+    end if
     if (diagnostics%known() > known) return
     segments%repeats = has_name(group, 'period')
     allocate (segments%curves(n))
@@ -205,23 +365,28 @@ contains
     if (diagnostics%known() == known) allocate (law, source=segments)
   end subroutine read_segments
 
-  !> Report a period that leaves a gap between the last segment and the first one, or cuts segments off.
-  subroutine check_period(group, times, diagnostics)
+  !> Report a period that leaves a gap between the end of a law and its next beginning, or cuts its end off.
+  pure subroutine check_period(group, times, what, remedy, variable, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
-    real(wp), intent(in) :: times(:)                      !< ends of the segments [s]
+    real(wp), intent(in) :: times(:)                      !< ends of the segments, or the abscissae of a table [s, or another unit]
+    character(len=*), intent(in) :: what                  !< words for the law and its verb, as in `the table lasts`
+    character(len=*), intent(in) :: remedy                !< for a gap
+    type(law_variable_type), intent(in) :: variable       !< the variable of the law
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     real(wp) :: period, span
 
     period = get_real(group, 'period')
     span = times(size(times)) - times(1)
     if (abs(period - span) <= same_period*span) return
-    if (period > span) then
-      call diagnostics%add(span_of(group, 'period', 1), 'the segments last '//to_text(span)//' s, which leaves a gap in a '// &
-                           'period of '//to_text(period)//' s; add a segment, for instance a dwell')
-    else
-      call diagnostics%add(span_of(group, 'period', 1), 'the segments last '//to_text(span)//' s, longer than a period of '// &
-                           to_text(period)//' s; give the period that they last, or leave out segments')
-    end if
+    associate (unit => ' '//trim(variable%unit))
+      if (period > span) then
+        call diagnostics%add(span_of(group, 'period', 1), what//' '//to_text(span)//trim(unit)//', which leaves a gap in a '// &
+                             'period of '//to_text(period)//trim(unit)//'; '//remedy)
+      else
+        call diagnostics%add(span_of(group, 'period', 1), what//' '//to_text(span)//trim(unit)//', longer than a period of '// &
+                             to_text(period)//trim(unit)//'; give the period of the whole law, or leave its end out')
+      end if
+    end associate
   end subroutine check_period
 
   !> The files that drives, laws of loads and motors, curves of pairs and couplings are read from, in a document that may be

@@ -10,7 +10,7 @@ module mech9_load_reader
   use mech9_procedure_load, only: procedure_load_type
   use mech9_document, only: document_type, group_type
   use mech9_lookup, only: groups_named, has_name, get_integer, get_integers, get_real, get_reals, get_text, span_of
-  use mech9_drive_reader, only: read_law, units_of_coordinate
+  use mech9_drive_reader, only: read_law, read_law_over, is_over, units_of_coordinate
   use mech9_motion_reader, only: check_link
   use mech9_diagnostics, only: diagnostics_type
   implicit none
@@ -61,8 +61,15 @@ contains
       end select
       slot%load%place = diagnostics%place(group%span)
       if (get_text(group, 'kind') == 'user' .or. .not. has_name(group, 'law')) return
-      call read_law(document, group, get_text(group, 'law'), coordinate_units_type(), slot%load%law, diagnostics)
-      if (allocated(slot%load%law)) slot%load%law%place = diagnostics%place(group%span)
+      if (is_over(group)) then
+        call read_law_over(document, group, mechanism, coordinate_units_type(), slot%load%over, diagnostics, advances=.false.)
+        if (.not. allocated(slot%load%over)) return
+        slot%load%over%law%load = count(groups_named(document, 'load') <= number)
+        slot%load%over%law%place = slot%load%place
+      else
+        call read_law(document, group, get_text(group, 'law'), coordinate_units_type(), slot%load%law, diagnostics)
+        if (allocated(slot%load%law)) slot%load%law%place = slot%load%place
+      end if
     end associate
   end subroutine read_load
 

@@ -17,6 +17,9 @@ module mech9_parameter_reader
   private
   public :: read_parameters, place_parameters, groups_of_parameters
 
+  !> A unit among others, of which none is named.
+  character(len=*), parameter :: unknown_unit = '1 or another'
+
 contains
 
   !> Read all groups &parameter, and set the numbers of the document that they name. A number and the value of its parameter may
@@ -177,6 +180,7 @@ contains
         if (place%group == 0) cycle
         document%groups(place%group)%items(place%item)%row = place%row
         parameter%targets(i)%unit = item_table(place%row)%unit
+        if (follows_variable(document%groups(place%group), item_table(place%row)%name)) parameter%targets(i)%unit = unknown_unit
         if (has_name(document%groups(place%group), 'coordinate')) &
           parameter%targets(i)%coordinate = get_integer(document%groups(place%group), 'coordinate')
       end do
@@ -190,6 +194,17 @@ contains
       exit
     end do
   end subroutine read_targets
+
+  !> Whether the unit of a number contains that of the variable of a law, where this is not the time.
+  pure logical function follows_variable(group, name)
+    type(group_type), intent(in) :: group      !< the group of the number
+    character(len=*), intent(in) :: name       !< of the item
+
+    follows_variable = .false.
+    if (all(group%name /= [character(len=5) :: 'load', 'motor'])) return
+    if (any(name == [character(len=17) :: 'coefficients', 'angular_frequency', 'times', 'period'])) &
+      follows_variable = has_name(group, 'over')
+  end function follows_variable
 
   !> Read one number for each target; a single one holds for all.
   pure subroutine read_each(group, name, numbers, diagnostics)

@@ -26,6 +26,7 @@ module mech9_reader
   use mech9_stop_reader, only: read_stops
   use mech9_contact_reader, only: read_contacts
   use mech9_friction_reader, only: read_frictions
+  use mech9_motor, only: motor_slot_type
   use mech9_motor_reader, only: read_motors
   use mech9_rod_holding, only: hold_idle_rods
   use mech9_output_reader, only: read_output, check_sensitivities, check_links
@@ -92,6 +93,7 @@ contains
     type(document_type), intent(in) :: document           !< checked
     type(model_type), intent(inout) :: model              !< with its program and its parameters; gets all else
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+    type(motor_slot_type), allocatable :: motors(:)
     logical :: known
 
     call read_settings(document, model%mechanism, diagnostics)
@@ -102,7 +104,8 @@ contains
     if (known) call check_link_numbers(document, model%mechanism%structure%shown_links(), diagnostics)
     call read_parts(document, model%mechanism, model%problem, model%request, diagnostics)
     if (model%program == dynamics) then
-      call read_motors(document, model%mechanism%pairs, model%mechanism%units, model%mechanism%motors, diagnostics)
+      call read_motors(document, model%mechanism, motors, diagnostics)
+      call move_alloc(motors, model%mechanism%motors)
     else if (.not. allocated(model%mechanism%motors)) then
       allocate (model%mechanism%motors(0))
     end if

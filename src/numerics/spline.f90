@@ -6,7 +6,7 @@ module mech9_spline
   use mech9_lapack, only: dgtsv
   implicit none
   private
-  public :: spline_type, build_spline
+  public :: spline_type, build_spline, build_periodic_spline
 
   !> Piecewise cubic; on [x(i), x(i+1)] it is given by the values and second derivatives at the ends.
   type :: spline_type
@@ -16,6 +16,7 @@ module mech9_spline
   contains
     procedure :: evaluate
     procedure :: steepest
+    procedure :: integrate
     procedure, private :: piece
   end type spline_type
 
@@ -72,6 +73,46 @@ contains
     spline%second(n) = right(n - 2, 1) + (right(n - 2, 1) - right(n - 3, 1))*h(n - 1)/h(n - 2)
   end subroutine build_spline
 
+  !> The spline through (x, y) whose slope and second derivative are the same at both ends, so that it goes on smoothly where it
+  !> repeats. The values at the ends may differ by a jump that each repetition adds. A cyclic system of three bands is one of three
+  !> bands with a change of rank one (Sherman and Morrison). Needs at least four points with increasing x.
+  subroutine build_periodic_spline(x, y, spline, err)
+    real(wp), intent(in) :: x(:)                        !< abscissae, increasing, at least four; the last one ends the period
+    real(wp), intent(in) :: y(:)                        !< values at x
+    type(spline_type), intent(out) :: spline            !< the curve
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    real(wp) :: h(0:size(x) - 1), slope(0:size(x) - 1)
+    real(wp) :: below(size(x) - 2), diagonal(size(x) - 1), above(size(x) - 2), right(size(x) - 1, 2), part
+    integer :: n, i, info
+
+    call build_spline(x, y, spline, err)
+    if (allocated(err)) return
+    n = size(x) - 1
+    h(1:) = x(2:) - x(:n)
+    slope(1:) = (y(2:) - y(:n))/h(1:)
+    h(0) = h(n)
+    slope(0) = slope(n)
+    do i = 1, n
+      diagonal(i) = 2.0_wp*(h(i - 1) + h(i))
+      right(i, 1) = 6.0_wp*(slope(i) - slope(i - 1))
+    end do
+    below = h(1:n - 1)
+    above = h(1:n - 1)
+    ! both corners h(n) of the cyclic matrix are in u v^T with u = (1, 0 .. 0, 1) h(n) and v = (1, 0 .. 0, 1)
+    diagonal(1) = diagonal(1) - h(n)
+    diagonal(n) = diagonal(n) - h(n)
+    right(:, 2) = 0.0_wp
+    right([1, n], 2) = h(n)
+    call dgtsv(n, 2, below, diagonal, above, right, n, info)
+    if (info /= 0) then
+      call raise(err, exit_data, failure_no_spline)
+      return
+    end if
+    part = (right(1, 1) + right(n, 1))/(1.0_wp + right(1, 2) + right(n, 2))
+    spline%second(:n) = right(:, 1) - part*right(:, 2)
+    spline%second(n + 1) = spline%second(1)
+  end subroutine build_periodic_spline
+
   !> Value and first two derivatives at x; outside its points the end pieces are continued.
   pure subroutine evaluate(self, x, y, dy, ddy)
     class(spline_type), intent(in) :: self   !< the spline
@@ -93,6 +134,33 @@ contains
       ddy = a*m0 + b*m1
     end associate
   end subroutine evaluate
+
+  !> The integral of the spline from its first point, and the integral of this one.
+  pure subroutine integrate(self, x, first, second)
+    class(spline_type), intent(in) :: self   !< the spline
+    real(wp), intent(in) :: x                !< the abscissa
+    real(wp), intent(out) :: first           !< the integral
+    real(wp), intent(out) :: second          !< the integral of the integral
+    real(wp) :: h, a, b
+    integer :: i, last
+
+    first = 0.0_wp
+    second = 0.0_wp
+    last = self%piece(x)
+    do i = 1, last
+      h = self%x(i + 1) - self%x(i)
+      b = 1.0_wp
+      if (i == last) b = (x - self%x(i))/h
+      a = 1.0_wp - b
+      associate (m0 => self%second(i), m1 => self%second(i + 1), y0 => self%y(i), y1 => self%y(i + 1))
+        second = second + b*h*first + h**2*(y0*(0.5_wp*b - (1.0_wp - a**3)/6.0_wp) + y1*b**3/6.0_wp &
+                 + h**2/6.0_wp*(m0*((1.0_wp - a**3)/6.0_wp - (1.0_wp - a**5)/20.0_wp - 0.25_wp*b) &
+                                + m1*(b**5/20.0_wp - b**3/6.0_wp)))
+        first = first + h*(0.5_wp*y0*(1.0_wp - a**2) + 0.5_wp*y1*b**2 &
+                + h**2/6.0_wp*(m0*(0.25_wp*(1.0_wp - a**4) - 0.5_wp*(1.0_wp - a**2)) + m1*(0.25_wp*b**4 - 0.5_wp*b**2)))
+      end associate
+    end do
+  end subroutine integrate
 
   !> A bound of |dy/dx| for x between two values, from the slope and the bending of each piece there.
   pure real(wp) function steepest(self, from, to)

@@ -27,7 +27,7 @@ module mech9_explanation
     failure_gimbal_lock, failure_lost_angles, failure_driven_dead_point, failure_lost_link, failure_loaded_lock, &
     failure_singular_passing
   use mech9_reaction_failures, only: failure_unbalanced
-  use mech9_equilibrium_failures, only: failure_no_equilibrium, failure_interrupted_starts
+  use mech9_equilibrium_failures, only: failure_no_equilibrium, failure_interrupted_starts, failure_moving_setpoint
   use mech9_block_names, only: chain_names, words_of_block
   use mech9_coupling_words, only: explain_coupling
   use mech9_choice_words, only: explain_choice, longest_list
@@ -386,6 +386,8 @@ contains
 
     if (failure%kind == failure_interrupted_starts) text = 'interrupted after '//to_text(failure%number)//' of '// &
       counted(failure%limit, 'random start')
+    if (failure%kind == failure_moving_setpoint) text = 'the setpoint of motor '//to_text(failure%number)//' follows '// &
+      failure%name//', and with an integral part it has no position of rest that is known before; leave integral= out'
     if (failure%kind /= failure_no_equilibrium) return
     forces = ''
     do i = 1, size(failure%coordinates)

@@ -408,6 +408,9 @@ def free_cases():
          ['closed chains 1, 2, 3, 4, 5 together (coordinates 4, ', ') come to a singular position at t = 0.14', ' s, in which some links '
           'can move in several ways, so that it is not certain how the motion goes on. End before this time, begin beside it, or '
           'change the dimensions']),
+        ('moving_setpoint', '&mechanism links=2, coordinates=1 /\n' + structure(1) + revolute(1, (1, 2)) + BODY + initial(1, 0.5)
+         + "&motor coordinate=1, kind='pid', proportional=3, integral=2, law='polynomial', coefficients=0,0.5, over='q1' /\n",
+         ('--equilibrium', '--no-write'), DATA, ['the setpoint of motor 1 follows q1, and with an integral part it has no position of rest']),
         ('no_equilibrium', '&mechanism links=2, coordinates=1 /\n' + structure(1) + revolute(1, (1, 2)) + BODY + initial(1, 0.5)
          + "&load kind='coordinate', coordinate=1, force=3 /\n", ('--equilibrium', '--no-write'), ASSEMBLY,
          ['no position of equilibrium was found from the initial position; where the search ended, the loads still push with '

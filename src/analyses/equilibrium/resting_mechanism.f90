@@ -5,7 +5,7 @@ module mech9_resting_mechanism
   use mech9_tolerances, only: singular_conditioning
   use mech9_integration_tolerances, only: worthwhile_improvement
   use mech9_simulation_tolerances, only: doubtful_conditioning
-  use mech9_error, only: error_type, raise, exit_singular
+  use mech9_error, only: error_type, raise, exit_singular, exit_integrator
   use mech9_simulation_failures, only: failure_singular_start_block
   use mech9_mechanism, only: mechanism_type
   use mech9_partition, only: partition_type, free_coordinate, driven_coordinate
@@ -116,7 +116,7 @@ contains
   end subroutine find_stiffness
 
   !> The mechanism after a step of its free coordinates, on the same branch: it is moved there as by drives. `moved` is false
-  !> where it cannot go so far.
+  !> where it cannot go so far, or where a load has no value.
   subroutine try_step(mechanism, resting, step, other, moved, err)
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
     type(resting_type), intent(in) :: resting           !< the mechanism at rest
@@ -140,6 +140,10 @@ contains
     position%ddq(resting%plan%independent) = resting%state%ddq(resting%plan%independent)
     call copy_resting(resting, other)
     call stand_at(mechanism, position, other, err)
+    if (.not. allocated(err)) return
+    ! beyond the end of a table over a coordinate a load has no value; a shorter step may not reach it
+    moved = err%code /= exit_integrator
+    if (.not. moved) deallocate (err)
   end subroutine try_step
 
   !> Drives that move the free coordinates by a step within 1 s and hold the others.

@@ -5,9 +5,10 @@
 !> there; the force of this drive is then that of the controller.
 module mech9_resting_motors
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, exit_assembly
-  use mech9_equilibrium_failures, only: failure_no_equilibrium
+  use mech9_error, only: error_type, raise, exit_data, exit_assembly
+  use mech9_equilibrium_failures, only: failure_no_equilibrium, failure_moving_setpoint
   use mech9_mechanism, only: mechanism_type
+  use mech9_law_over, only: law_over_type
   use mech9_motor, only: motor_action_type
   use mech9_motor_states, only: start_motors, find_limits, find_action
   use mech9_partition, only: partition_type, driven_coordinate
@@ -61,6 +62,13 @@ contains
     do i = 1, size(mechanism%motors)
       associate (motor => mechanism%motors(i)%motor)
         if (.not. motor%holds_setpoint()) cycle
+        if (allocated(motor%over)) then
+          call raise(err, exit_data, failure_moving_setpoint)
+          err%failure%number = i
+          err%failure%name = trim(motor%over%law%variable)
+          err%place = motor%place
+          return
+        end if
         call motor%law%evaluate(assembled%t, q(motor%coordinate), rate, acceleration, err)
         if (allocated(err)) return
         is_held(motor%coordinate) = .true.
@@ -186,9 +194,25 @@ contains
           coupling%rate_by_dq(s, :) = action%rate_by_dq*by_rate(:, k)
           coupling%rate_by_state(s) = action%rate_by_value
           if (v > 0) coupling%rate_by_input(s, v) = action%rate_by_input
+          if (allocated(mechanism%motors(i)%motor%over)) call add_variable(mechanism%motors(i)%motor%over)
         end if
       end associate
     end do
+  contains
+    !> Add the derivatives of the rate of a state by the variable of the motor's law.
+    subroutine add_variable(over)
+      type(law_over_type), intent(in) :: over   !< the law
+
+      associate (j => over%coordinate, by_x => action%rate_by_x/over%unit, by_dx => action%rate_by_dx/over%unit)
+        if (over%is_rate) then
+          coupling%rate_by_q(s, :) = coupling%rate_by_q(s, :) + by_x*rate_by_position(:, j)
+          coupling%rate_by_dq(s, :) = coupling%rate_by_dq(s, :) + by_x*by_rate(:, j)
+        else
+          coupling%rate_by_q(s, :) = coupling%rate_by_q(s, :) + by_x*by_position(:, j) + by_dx*rate_by_position(:, j)
+          coupling%rate_by_dq(s, :) = coupling%rate_by_dq(s, :) + by_dx*by_rate(:, j)
+        end if
+      end associate
+    end subroutine add_variable
   end subroutine couple_motors
 
   !> Derivatives of all coordinates and rates by the free coordinates and their rates.

@@ -5,6 +5,8 @@ module mech9_force_explanations
   private
   public :: body_texts, load_texts, motor_texts, stop_texts, friction_texts, contact_texts
 
+  character(len=*), parameter :: any_law = 'law:polynomial law:harmonic law:table law:segments'
+
   type(explanation_type), parameter :: body_texts(*) = [ &
     explanation_type('body', 'link', '', &
                   'A body gives a link its mass, mass centre and inertia. Name the link by its number. Enter goes on '// &
@@ -78,6 +80,10 @@ module mech9_force_explanations
     explanation_type('load', 'law', 'force torque spring coordinate', &
                   'The load is multiplied by a number that depends on time as a drive does: constant, polynomial, harmonic, '// &
                   'table or segments.', 'harmonic'), &
+    explanation_type('load', 'over', any_law, &
+                  'The law may have another variable than the time: a coordinate (q1), its rate (dq1), or the position or '// &
+                  'velocity of a point (P.x, P.vx). Spring curves, and forces over a crank angle, are such loads.', &
+                  'q1 (the law counts in coordinate 1)'), &
     explanation_type('load', 'coefficients', 'law:polynomial', &
                   'The factor is c0 + c1 t + c2 t^2 + ..., with the time t in seconds.', '0, 0.5 (grows by a half each second)'), &
     explanation_type('load', 'mean', 'law:harmonic', &
@@ -91,7 +97,8 @@ module mech9_force_explanations
                   'The factor is mean + amplitude sin(angular_frequency t + phase).', &
                   '1.5708 (begins at mean + amplitude)', '90 (begins at mean + amplitude)'), &
     explanation_type('load', 'file', 'law:table', &
-                  'Name a text file that has a time and the factor in each line, beside the data file.', 'force.dat'), &
+                  'Name a text file that has a time, or the value of the variable, and the factor in each line, beside the '// &
+                  'data file.', 'force.dat'), &
     explanation_type('load', 'times', 'law:segments', &
                   'Segments begin and end at these times in seconds, which increase: three times make two segments. They '// &
                   'cover the times of the run, unless they repeat.', '0, 0.5, 1'), &
@@ -100,8 +107,8 @@ module mech9_force_explanations
     explanation_type('load', 'laws', 'law:segments', &
                   'Each segment goes from its first value to its last by a motion law of cam design, and by dwell where both '// &
                   'values are the same. One law serves for all segments.', 'cycloidal, dwell (two segments)'), &
-    explanation_type('load', 'period', 'law:segments', &
-                  'With a period the segments repeat. It is the time from the first to the last of the times.', '1')]
+    explanation_type('load', 'period', 'law:segments law:table', &
+                  'With a period the segments or the table repeat. It is the time from the first to the last of the times.', '1')]
 
   type(explanation_type), parameter :: motor_texts(*) = [ &
     explanation_type('motor', 'coordinate', '', &
@@ -139,6 +146,9 @@ module mech9_force_explanations
     explanation_type('motor', 'law', '', &
                   'The voltage is multiplied by a number that depends on time as a drive does, or the setpoint depends on time '// &
                   'so: constant, polynomial, harmonic, table or segments.', 'harmonic'), &
+    explanation_type('motor', 'over', any_law, &
+                  'The law may have another variable than the time: a coordinate (q1), or its rate (dq1).', &
+                  'dq1 (the law counts in the rate of coordinate 1)'), &
     explanation_type('motor', 'coefficients', 'law:polynomial', &
                   'The factor or setpoint is c0 + c1 t + c2 t^2 + ..., with the time t in seconds.', &
                   '0, 0.5 (grows by a half each second)'), &
@@ -163,8 +173,8 @@ module mech9_force_explanations
     explanation_type('motor', 'laws', 'law:segments', &
                   'Each segment goes from its first value to its last by a motion law of cam design, and by dwell where both '// &
                   'values are the same. One law serves for all segments.', 'cycloidal, dwell (two segments)'), &
-    explanation_type('motor', 'period', 'law:segments', &
-                  'With a period the segments repeat. It is the time from the first to the last of the times.', '1')]
+    explanation_type('motor', 'period', 'law:segments law:table', &
+                  'With a period the segments or the table repeat. It is the time from the first to the last of the times.', '1')]
 
   type(explanation_type), parameter :: stop_texts(*) = [ &
     explanation_type('stop', 'coordinate', '', &

@@ -8,7 +8,7 @@ module mech9_name_explanation
   type :: explanation_type
     character(len=10) :: group
     character(len=20) :: name
-    character(len=48) :: kinds                 !< kinds as in the grammar, which tell rows of one name apart
+    character(len=56) :: kinds                 !< kinds as in the grammar, which tell rows of one name apart
     character(len=275) :: text                 !< whole sentences
     character(len=84) :: example               !< a value as it is typed, for angles in rad, and its meaning in parentheses
     character(len=84) :: degrees = ''          !< the same for an angle in degrees; empty: as in rad

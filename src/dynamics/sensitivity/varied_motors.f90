@@ -24,8 +24,7 @@ contains
     do i = 1, size(changes, 2)
       associate (motor => model%mechanism%motors(i)%motor)
         do p = 1, motion%n_parameters
-          moved%q = motion%q(p, 0, motor%coordinate)
-          moved%dq = motion%q(p, 1, motor%coordinate)
+          moved = motor%change_of_motion(motion%q(p, 0, :), motion%q(p, 1, :))
           moved%value = motion%motor(p, i)
           associate (part => motion%tangents(p)%motors(i), present => motion_of_state(motor, i, motion%state))
             if (part%varies) then

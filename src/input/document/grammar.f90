@@ -5,7 +5,8 @@
 module mech9_grammar
   use mech9_program_kind, only: kinematics, dynamics, both => both_programs
   use mech9_text, only: lower
-  use mech9_grammar_rows, only: group_row_type, item_row_type, unlimited, for_forces, needed, optional
+  use mech9_grammar_rows, only: group_row_type, item_row_type, unlimited, for_forces, needed, optional, any_law, &
+    variable_of_law, variable_of_motor
   use mech9_study_grammar, only: study_items, link_items
   use mech9_output_grammar, only: output_items
   implicit none
@@ -294,8 +295,9 @@ module mech9_grammar
     item_row_type('load', 'damping', 'real', 1, 1, 'N s/m, N m s', optional, '0', '', '', 'coordinate', &
                   'torque or force per dq/dt; per rad/s for angles, also with angle_unit=''deg''', '1.5'), &
     item_row_type('load', 'law', 'text', 1, 1, '', optional, '''constant''', '', 'constant polynomial harmonic table segments', &
-                  'force torque spring coordinate', 'the load is multiplied by this law of time, with the names of &drive', &
-                  '''harmonic''', seldom=.true.), &
+                  'force torque spring coordinate', 'the load is multiplied by this law of time, or of another variable, '// &
+                  'with the names of &drive', '''harmonic''', seldom=.true.), &
+    item_row_type('load', 'over', 'text', 1, 1, '', optional, '''t''', '', '', any_law, variable_of_law, '''q1'''), &
     item_row_type('load', 'coefficients', 'real', 1, unlimited, '1, 1/s, ...', needed, '', '', '', 'law:polynomial', &
                   'c0, c1, c2, ... of the factor c0 + c1 t + c2 t^2 + ...', '0, 0.5'), &
     item_row_type('load', 'mean', 'real', 1, 1, '', optional, '0', '', '', 'law:harmonic', &
@@ -315,8 +317,8 @@ module mech9_grammar
                   'the factor at these times', '0, 1, 1'), &
     item_row_type('load', 'laws', 'text', 1, unlimited, '', needed, '', '', motion_laws, 'law:segments', &
                   'the motion law of each segment, or one for all', '''cycloidal'''), &
-    item_row_type('load', 'period', 'real', 1, 1, 's', optional, '(no repetition)', '>0', '', 'law:segments', &
-                  'the segments repeat after this time, which is that from the first to the last of times', '1')]
+    item_row_type('load', 'period', 'real', 1, 1, 's', optional, '(no repetition)', '>0', '', 'law:segments law:table', &
+                  'segments or table repeat after this time, which is that from the first to the last time', '1')]
 
   type(item_row_type), parameter :: motor_items(*) = [ &
     item_row_type('motor', 'coordinate', 'integer', 1, 1, '', needed, '', '>=1', '', '', &
@@ -345,6 +347,7 @@ module mech9_grammar
     item_row_type('motor', 'law', 'text', 1, 1, '', optional, '''constant''', '', 'constant polynomial harmonic table segments', &
                   '', 'the form in time of the factor of voltage, or of the setpoint, with the names of &drive', '''harmonic''', &
                   seldom=.true.), &
+    item_row_type('motor', 'over', 'text', 1, 1, '', optional, '''t''', '', '', any_law, variable_of_motor, '''dq1'''), &
     item_row_type('motor', 'coefficients', 'real', 1, unlimited, '1 or q, /s', needed, '', '', '', 'law:polynomial', &
                   'c0, c1, c2, ... of the factor or setpoint c0 + c1 t + c2 t^2 + ...', '0, 0.5'), &
     item_row_type('motor', 'mean', 'real', 1, 1, '1 or q', optional, '0', '', '', 'law:harmonic', &
@@ -364,8 +367,8 @@ module mech9_grammar
                   'the factor or setpoint at these times', '0, 1, 1'), &
     item_row_type('motor', 'laws', 'text', 1, unlimited, '', needed, '', '', motion_laws, 'law:segments', &
                   'the motion law of each segment, or one for all', '''cycloidal'''), &
-    item_row_type('motor', 'period', 'real', 1, 1, 's', optional, '(no repetition)', '>0', '', 'law:segments', &
-                  'the segments repeat after this time, which is that from the first to the last of times', '1')]
+    item_row_type('motor', 'period', 'real', 1, 1, 's', optional, '(no repetition)', '>0', '', 'law:segments law:table', &
+                  'segments or table repeat after this time, which is that from the first to the last time', '1')]
 
   type(item_row_type), parameter :: cam_items(*) = [ &
     item_row_type('cam', 'link', 'integer', 1, 1, '', needed, '', '>=1', '', '', &

@@ -3,7 +3,7 @@ module mech9_grammar_rows
   use mech9_program_kind, only: both_programs
   implicit none
   private
-  public :: group_row_type, item_row_type, unlimited, for_forces, needed, optional
+  public :: group_row_type, item_row_type, unlimited, for_forces, needed, optional, any_law, variable_of_law, variable_of_motor
   public :: refers_to, refers_to_link, refers_to_coordinate
 
   !> One kind of group.
@@ -43,6 +43,14 @@ module mech9_grammar_rows
 
   !> The numbers under a name are those of links, or of coordinates: names may stand in their places.
   integer, parameter :: refers_to_link = 1, refers_to_coordinate = 2
+
+
+  !> Names that belong to all laws but a constant, and the meaning of that of their variable.
+  character(len=*), parameter :: any_law = 'law:polynomial law:harmonic law:table law:segments'
+  character(len=*), parameter :: variable_of_law = 'variable of the law in place of t: a coordinate, a rate (dq1) or a point '// &
+    '(P.x, P.vx), in units of this file'
+  character(len=*), parameter :: variable_of_motor = 'variable of the law in place of t: a coordinate or a rate (dq1), in '// &
+    'units of this file'
 
 contains
 

@@ -1,8 +1,8 @@
 !> A law of time: an independent coordinate as a given function of time, the setpoint of a motor, or the factor by which a load is
-!> multiplied.
+!> multiplied. A load or a motor may have a law over another variable in place of time.
 module mech9_law
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, place_type, raise, exit_data
+  use mech9_error, only: error_type, place_type, raise, exit_data, exit_integrator
   use mech9_text, only: to_text
   implicit none
   private
@@ -12,6 +12,9 @@ module mech9_law
   type, abstract :: law_type
     integer :: coordinate = 0   !< number of the coordinate that it drives or leads; 0 for a factor
     integer :: motor = 0        !< number of the motor whose voltage or setpoint it gives; 0 for other laws
+    integer :: load = 0         !< number of the load that it multiplies, where its variable is not the time; 0 for other laws
+    character(len=80) :: variable = 't'       !< name of its variable
+    character(len=8) :: variable_unit = 's'   !< unit of the variable
     type(place_type) :: place   !< place of its group in the data file
   contains
     procedure(evaluate_interface), deferred :: evaluate
@@ -22,6 +25,12 @@ module mech9_law
     procedure :: owner
     procedure :: constants => unknown_constants
     procedure :: vary => vary_nothing
+    procedure :: antiderivatives => no_antiderivatives
+    procedure :: vary_antiderivatives => no_varied_antiderivatives
+    procedure :: has_value_at
+    procedure, non_overridable :: integrals
+    procedure, non_overridable :: vary_integrals
+    procedure, non_overridable :: wording_at
   end type law_type
 
   !> One of several drives of different kinds.
@@ -98,14 +107,15 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if there is no value
   end subroutine check_time
 
-  !> Fail because a law has values from one time to another, and not at a time that lies outside. The numbers have as many digits
-  !> as show the difference.
+  !> Fail because a law has values from one value of its variable to another, and not outside. The numbers have as many digits as
+  !> show the difference. A law of time fails with exit_data; one over another variable, which a motion leads there, with
+  !> exit_integrator.
   subroutine refuse_time(self, name, first, last, t, demand, remedy, err)
     class(law_type), intent(in) :: self                 !< the law
     character(len=*), intent(in) :: name                !< of that which gives its values, in the singular
-    real(wp), intent(in) :: first                       !< time of the first value [s]
-    real(wp), intent(in) :: last                        !< time of the last value [s]
-    real(wp), intent(in) :: t                           !< the time outside [s]
+    real(wp), intent(in) :: first                       !< variable of the first value [s, or its unit]
+    real(wp), intent(in) :: last                        !< variable of the last value
+    real(wp), intent(in) :: t                           !< the variable outside
     character(len=*), intent(in) :: demand              !< the words before this time
     character(len=*), intent(in) :: remedy              !< in the imperative
     type(error_type), allocatable, intent(out) :: err   !< the failure
@@ -116,10 +126,30 @@ contains
     do digits = 6, 16
       if (to_text(edge, digits) /= to_text(t, digits)) exit
     end do
-    call raise(err, exit_data, 'the '//name//' of the '//trim(self%owner())//' has no value '// &
-               trim(merge('before', 'after ', t < first))//' t = '//to_text(edge, digits)//' s, and '//demand//' t = '// &
-               to_text(t, digits)//' s; '//remedy, self%place)
+    if (self%variable == 't') then
+      call raise(err, exit_data, 'the '//name//' of the '//trim(self%owner())//' has no value '// &
+                 trim(merge('before', 'after ', t < first))//' t = '//to_text(edge, digits)//' s, and '//demand//' t = '// &
+                 to_text(t, digits)//' s; '//remedy//' or shorten &time', self%place)
+    else
+      call raise(err, exit_integrator, 'the '//name//' of '//trim(self%owner())//' has values from '//self%wording_at(first)// &
+                 ' to '//self%wording_at(last)//' only, and the motion leads to '//self%wording_at(t, digits)//'; '//remedy// &
+                 ' or give period=', self%place)
+    end if
   end subroutine refuse_time
+
+  !> The variable of the law with a value, in words.
+  pure function wording_at(self, x, digits) result(words)
+    class(law_type), intent(in) :: self        !< the law
+    real(wp), intent(in) :: x                  !< value of the variable
+    integer, intent(in), optional :: digits    !< number of digits that are shown; 6 unless given
+    character(len=:), allocatable :: words
+    integer :: shown
+
+    shown = 6
+    if (present(digits)) shown = digits
+    words = trim(self%variable)//' = '//to_text(x, shown)
+    if (self%variable_unit /= '') words = words//' '//trim(self%variable_unit)
+  end function wording_at
 
   !> The owner of the law in messages.
   pure function owner(self)
@@ -127,6 +157,7 @@ contains
     character(len=40) :: owner
 
     owner = 'load'
+    if (self%load > 0) owner = 'load '//to_text(self%load)
     if (self%motor > 0) owner = 'motor '//to_text(self%motor)
     if (self%coordinate > 0 .and. self%motor == 0) owner = 'drive of coordinate '//to_text(self%coordinate)
   end function owner
@@ -153,6 +184,74 @@ contains
     dq = 0.0_wp
     ddq = 0.0_wp
   end subroutine vary_nothing
+
+  !> Whether the law has a value. This procedure, for laws that have values everywhere, answers that it has.
+  pure logical function has_value_at(self, x)
+    class(law_type), intent(in) :: self     !< the law
+    real(wp), intent(in) :: x               !< its variable [s, or its unit]
+
+    has_value_at = .true.
+  end function has_value_at
+
+  !> The integral of the law from its first value, or from 0 where it has none, and the integral of this one. They give loads a
+  !> potential. This procedure is for laws of drives, which need none.
+  pure subroutine no_antiderivatives(self, x, value, first, second)
+    class(law_type), intent(in) :: self     !< the law
+    real(wp), intent(in) :: x               !< its variable [s, or its unit]
+    real(wp), intent(out) :: value          !< the law
+    real(wp), intent(out) :: first          !< its integral
+    real(wp), intent(out) :: second         !< the integral of the integral
+
+    value = 0.0_wp
+    first = 0.0_wp
+    second = 0.0_wp
+  end subroutine no_antiderivatives
+
+  !> The derivatives of both by one parameter, from those of the numbers of the law. This procedure is for laws without such
+  !> numbers.
+  pure subroutine no_varied_antiderivatives(self, change, x, first, second)
+    class(law_type), intent(in) :: self     !< the law
+    real(wp), intent(in) :: change(:)       !< derivatives of its numbers
+    real(wp), intent(in) :: x               !< its variable [s, or its unit]
+    real(wp), intent(out) :: first          !< derivative of the integral
+    real(wp), intent(out) :: second         !< derivative of the integral of the integral
+
+    first = 0.0_wp
+    second = 0.0_wp
+  end subroutine no_varied_antiderivatives
+
+  !> The integral of the law from 0, and the integral of this one from 0. Where the law has no value at 0, both begin at its first
+  !> value.
+  pure subroutine integrals(self, x, value, first, second)
+    class(law_type), intent(in) :: self     !< the law
+    real(wp), intent(in) :: x               !< its variable [s, or its unit]
+    real(wp), intent(out) :: value          !< the law
+    real(wp), intent(out) :: first          !< its integral
+    real(wp), intent(out) :: second         !< the integral of the integral
+    real(wp) :: at_zero, first_at_zero, second_at_zero
+
+    call self%antiderivatives(x, value, first, second)
+    if (.not. self%has_value_at(0.0_wp)) return
+    call self%antiderivatives(0.0_wp, at_zero, first_at_zero, second_at_zero)
+    first = first - first_at_zero
+    second = second - second_at_zero - first_at_zero*x
+  end subroutine integrals
+
+  !> The derivatives of both integrals by one parameter, from those of the numbers of the law.
+  pure subroutine vary_integrals(self, change, x, first, second)
+    class(law_type), intent(in) :: self     !< the law
+    real(wp), intent(in) :: change(:)       !< derivatives of its numbers
+    real(wp), intent(in) :: x               !< its variable [s, or its unit]
+    real(wp), intent(out) :: first          !< derivative of the integral
+    real(wp), intent(out) :: second         !< derivative of the integral of the integral
+    real(wp) :: first_at_zero, second_at_zero
+
+    call self%vary_antiderivatives(change, x, first, second)
+    if (.not. self%has_value_at(0.0_wp)) return
+    call self%vary_antiderivatives(change, 0.0_wp, first_at_zero, second_at_zero)
+    first = first - first_at_zero
+    second = second - second_at_zero - first_at_zero*x
+  end subroutine vary_integrals
 
   !> A time at or near a joint, moved into the piece on one side of it by a little more than round-off.
   pure real(wp) function from_inside(t, direction)

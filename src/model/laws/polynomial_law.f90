@@ -3,7 +3,6 @@ module mech9_polynomial_law
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data
-  use mech9_text, only: to_text
   use mech9_law, only: law_type
   implicit none
   private
@@ -20,6 +19,8 @@ module mech9_polynomial_law
     procedure :: greatest_rate
     procedure :: constants
     procedure :: vary
+    procedure :: antiderivatives
+    procedure :: vary_antiderivatives
   end type polynomial_law_type
 
 contains
@@ -36,7 +37,7 @@ contains
     call sum_terms(self%coefficients, t, q, dq, ddq)
     if (.not. (ieee_is_finite(q) .and. ieee_is_finite(dq) .and. ieee_is_finite(ddq))) &
       call raise(err, exit_data, 'the polynomial of the '//trim(self%owner())//' or a derivative of it is beyond all '// &
-                 'numbers at t = '//to_text(t, 12)//' s; correct its coefficients', self%place)
+                 'numbers at '//self%wording_at(t, 12)//'; correct its coefficients', self%place)
   end subroutine evaluate
 
   !> A polynomial and its first two derivatives.
@@ -127,4 +128,48 @@ contains
       terms(0) = terms(0)*t + c
     end do
   end subroutine find_terms
+
+  !> The law, its integral from 0, and the integral of this one, by Horner's rule.
+  pure subroutine antiderivatives(self, x, value, first, second)
+    class(polynomial_law_type), intent(in) :: self   !< the polynomial law
+    real(wp), intent(in) :: x                        !< its variable [s, or its unit]
+    real(wp), intent(out) :: value                   !< the law
+    real(wp), intent(out) :: first                   !< its integral
+    real(wp), intent(out) :: second                  !< the integral of the integral
+
+    call integrate_terms(self%coefficients, x, value, first, second)
+  end subroutine antiderivatives
+
+  !> The derivatives of both integrals by one parameter: integrals of a polynomial with the derivatives of the coefficients.
+  pure subroutine vary_antiderivatives(self, change, x, first, second)
+    class(polynomial_law_type), intent(in) :: self   !< the polynomial law
+    real(wp), intent(in) :: change(:)                !< derivatives of the coefficients
+    real(wp), intent(in) :: x                        !< its variable [s, or its unit]
+    real(wp), intent(out) :: first                   !< derivative of the integral
+    real(wp), intent(out) :: second                  !< derivative of the integral of the integral
+    real(wp) :: value
+
+    call integrate_terms(change, x, value, first, second)
+  end subroutine vary_antiderivatives
+
+  !> A polynomial and its integrals from 0.
+  pure subroutine integrate_terms(coefficients, x, value, first, second)
+    real(wp), intent(in) :: coefficients(:)   !< of 1, x, x^2, ...
+    real(wp), intent(in) :: x                 !< the variable
+    real(wp), intent(out) :: value            !< the polynomial
+    real(wp), intent(out) :: first            !< its integral
+    real(wp), intent(out) :: second           !< the integral of the integral
+    integer :: i
+
+    value = 0.0_wp
+    first = 0.0_wp
+    second = 0.0_wp
+    do i = size(coefficients), 1, -1
+      value = value*x + coefficients(i)
+      first = first*x + coefficients(i)/i
+      second = second*x + coefficients(i)/(i*(i + 1))
+    end do
+    first = first*x
+    second = second*x**2
+  end subroutine integrate_terms
 end module mech9_polynomial_law

@@ -7,6 +7,7 @@ module mech9_segments_law
   use mech9_error, only: error_type
   use mech9_law, only: law_type, refuse_time
   use mech9_cam_curves, only: cam_curve, cam_third, steepest_slope_of
+  use mech9_cam_integrals, only: cam_integrals
   implicit none
   private
   public :: segments_law_type
@@ -25,6 +26,9 @@ module mech9_segments_law
     procedure :: check_time
     procedure :: constants
     procedure :: vary
+    procedure :: antiderivatives
+    procedure :: vary_antiderivatives
+    procedure :: has_value_at
     procedure, private :: rounds_before
   end type segments_law_type
 
@@ -103,13 +107,19 @@ contains
     character(len=*), intent(in) :: demand              !< the words before this time
     type(error_type), allocatable, intent(out) :: err   !< allocated if there is no value
 
-    if (self%repeats) return
-    associate (first => self%times(1), last => self%times(size(self%times)))
-      if (t < first - slack(self, t) .or. t > last + slack(self, t)) &
-        call refuse_time(self, 'law in segments', first, last, t, demand, 'add segments, give period=, or shorten &time', &
-                         err)
-    end associate
+    if (self%has_value_at(t)) return
+    call refuse_time(self, 'law in segments', self%times(1), self%times(size(self%times)), t, demand, 'add segments'// &
+                     trim(merge(', give period=,', '               ', self%variable == 't')), err)
   end subroutine check_time
+
+  !> Whether the segments hold a value, or repeat.
+  pure logical function has_value_at(self, x)
+    class(segments_law_type), intent(in) :: self   !< the law
+    real(wp), intent(in) :: x                      !< its variable [s, or its unit]
+
+    has_value_at = self%repeats .or. &
+                   (x >= self%times(1) - slack(self, x) .and. x <= self%times(size(self%times)) + slack(self, x))
+  end function has_value_at
 
   !> Number of whole periods before a time; 0 where nothing repeats.
   pure real(wp) function rounds_before(self, t)
@@ -121,12 +131,13 @@ contains
       real(floor((t - self%times(1))/(self%times(size(self%times)) - self%times(1)), selected_int_kind(15)), wp)
   end function rounds_before
 
-  !> Round-off in a time, in which it may miss an end.
+  !> Round-off in a time, in which it may miss an end; the error of another variable, which a motion leads there.
   pure real(wp) function slack(self, t)
-    type(segments_law_type), intent(in) :: self   !< the law
+    class(segments_law_type), intent(in) :: self  !< the law
     real(wp), intent(in) :: t                     !< time [s]
+    real(wp), parameter :: of_time = 1.0e-12_wp, of_motion = 1.0e-9_wp   ! parts of all segments
 
-    slack = 1.0e-12_wp*(self%times(size(self%times)) - self%times(1)) + 64.0_wp*spacing(t)
+    slack = merge(of_time, of_motion, self%variable == 't')*(self%times(size(self%times)) - self%times(1)) + 64.0_wp*spacing(t)
   end function slack
 
   !> Number of the segment at a time of the first period.
@@ -201,4 +212,102 @@ contains
     i = minloc(abs(self%times(:n + 1) + rounds*period - joint), dim=1)
     joint_rate = change(i) + rounds*(change(n + 1) - change(1))
   end function joint_rate
+
+  !> The law, its integral from the first time, and the integral of this one.
+  pure subroutine antiderivatives(self, x, value, first, second)
+    class(segments_law_type), intent(in) :: self   !< the law
+    real(wp), intent(in) :: x                      !< its variable [s, or its unit]
+    real(wp), intent(out) :: value                 !< the law
+    real(wp), intent(out) :: first                 !< its integral
+    real(wp), intent(out) :: second                !< the integral of the integral
+    real(wp) :: sums(2), changes(2), zeros(2*size(self%times))
+
+    zeros = 0.0_wp
+    call integrate_all(self, zeros, x, value, sums, changes)
+    first = sums(1)
+    second = sums(2)
+  end subroutine antiderivatives
+
+  !> The derivatives of both integrals by one parameter, from those of the times and values.
+  pure subroutine vary_antiderivatives(self, change, x, first, second)
+    class(segments_law_type), intent(in) :: self   !< the law
+    real(wp), intent(in) :: change(:)              !< (2n+2) derivatives of the times, then of the values
+    real(wp), intent(in) :: x                      !< its variable [s, or its unit]
+    real(wp), intent(out) :: first                 !< derivative of the integral
+    real(wp), intent(out) :: second                !< derivative of the integral of the integral
+    real(wp) :: value, sums(2), changes(2)
+
+    call integrate_all(self, change, x, value, sums, changes)
+    first = changes(1)
+    second = changes(2)
+  end subroutine vary_antiderivatives
+
+  !> Both integrals up to a place, whole periods before it included, with their derivatives by one parameter.
+  pure subroutine integrate_all(self, change, x, value, sums, changes)
+    type(segments_law_type), intent(in) :: self    !< the law
+    real(wp), intent(in) :: change(:)              !< (2n+2) derivatives of the times, then of the values
+    real(wp), intent(in) :: x                      !< its variable [s, or its unit]
+    real(wp), intent(out) :: value                 !< the law
+    real(wp), intent(out) :: sums(2)               !< the integral, and its integral
+    real(wp), intent(out) :: changes(2)            !< their derivatives
+    real(wp) :: rounds, period, period_change, inside, into, into_change, whole(2), whole_changes(2), last
+    integer :: n
+
+    n = size(self%times)
+    rounds = self%rounds_before(x)
+    period = self%times(n) - self%times(1)
+    period_change = change(n) - change(1)
+    inside = x - rounds*period
+    call integrate_period(self, change, inside, -rounds*period_change, value, sums, changes)
+    if (.not. abs(rounds) > 0.0_wp) return
+    call integrate_period(self, change, self%times(n), change(n), last, whole, whole_changes)
+    into = inside - self%times(1) + 0.5_wp*(rounds - 1.0_wp)*period
+    into_change = -rounds*period_change - change(1) + 0.5_wp*(rounds - 1.0_wp)*period_change
+    sums(2) = sums(2) + rounds*(whole(1)*into + whole(2))
+    changes(2) = changes(2) + rounds*(whole_changes(1)*into + whole(1)*into_change + whole_changes(2))
+    sums(1) = sums(1) + rounds*whole(1)
+    changes(1) = changes(1) + rounds*whole_changes(1)
+  end subroutine integrate_all
+
+  !> Both integrals from the first time up to a place in the first period, with their derivatives by one parameter.
+  pure subroutine integrate_period(self, change, x, x_change, value, sums, changes)
+    type(segments_law_type), intent(in) :: self    !< the law
+    real(wp), intent(in) :: change(:)              !< (2n+2) derivatives of the times, then of the values
+    real(wp), intent(in) :: x                      !< the place
+    real(wp), intent(in) :: x_change               !< its derivative
+    real(wp), intent(out) :: value                 !< the law
+    real(wp), intent(out) :: sums(2)               !< the integral, and its integral
+    real(wp), intent(out) :: changes(2)            !< their derivatives
+    real(wp) :: h, h_change, rise, rise_change, u, u_change, s, ds, dds, first, second, way, way_change
+    integer :: i, last, n
+
+    n = size(self%times)
+    last = segment_of(self, x)
+    sums = 0.0_wp
+    changes = 0.0_wp
+    do i = 1, last
+      h = self%times(i + 1) - self%times(i)
+      h_change = change(i + 1) - change(i)
+      rise = self%values(i + 1) - self%values(i)
+      rise_change = change(n + i + 1) - change(n + i)
+      u = 1.0_wp
+      u_change = 0.0_wp
+      if (i == last) then
+        u = max(0.0_wp, min(1.0_wp, (x - self%times(i))/h))
+        u_change = (x_change - change(i) - u*h_change)/h
+      end if
+      way = u*h
+      way_change = u_change*h + u*h_change
+      call cam_curve(self%curves(i), u, s, ds, dds)
+      call cam_integrals(self%curves(i), u, first, second)
+      value = self%values(i) + rise*s
+      changes(2) = changes(2) + changes(1)*way + sums(1)*way_change &
+                   + 2.0_wp*h*h_change*(0.5_wp*self%values(i)*u**2 + rise*second) &
+                   + h**2*(0.5_wp*change(n + i)*u**2 + rise_change*second + (self%values(i)*u + rise*first)*u_change)
+      sums(2) = sums(2) + sums(1)*way + h**2*(0.5_wp*self%values(i)*u**2 + rise*second)
+      changes(1) = changes(1) + h_change*(self%values(i)*u + rise*first) &
+                   + h*(change(n + i)*u + rise_change*first + value*u_change)
+      sums(1) = sums(1) + h*(self%values(i)*u + rise*first)
+    end do
+  end subroutine integrate_period
 end module mech9_segments_law

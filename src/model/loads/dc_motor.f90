@@ -33,11 +33,9 @@ contains
     type(motor_motion_type), intent(in) :: motion        !< of its coordinate, and its current
     type(motor_action_type), intent(out) :: action       !< its force, the rate of its current, and derivatives
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
-    real(wp) :: factor, factor_rate, unused, coupling
+    real(wp) :: factor, factor_rate, unused, slope, bending, coupling
 
-    factor = 1.0_wp
-    factor_rate = 0.0_wp
-    if (allocated(self%law)) call self%law%evaluate(motion%t, factor, factor_rate, unused, err)
+    call self%find_law(motion, factor, factor_rate, unused, slope, bending, err)
     if (allocated(err)) return
     coupling = self%gear_ratio*self%constant
     if (motion%steady .or. .not. self%has_state()) then
@@ -52,6 +50,7 @@ contains
       action%rate_by_dq = -coupling/self%inductance
       action%rate_by_value = -self%resistance/self%inductance
       action%rate_by_input = 1.0_wp/self%inductance
+      action%rate_by_x = self%voltage*slope/self%inductance
     end if
     action%force = coupling*action%value
   end subroutine act
@@ -87,15 +86,14 @@ contains
     type(motor_change_type), intent(out) :: change       !< the derivative
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
     type(motor_action_type) :: action
-    real(wp) :: changes(5), factor, factor_change, rate, acceleration, coupling, coupling_change, drop_change
+    real(wp) :: changes(5), factor, factor_change, rate, second, slope, bending, coupling, coupling_change, drop_change
 
     call self%act(motion, action, err)
-    if (.not. allocated(err)) call self%find_factor(motion%t, factor, err)
+    if (.not. allocated(err)) call self%find_law(motion, factor, rate, second, slope, bending, err)
+    if (.not. allocated(err)) call self%vary_law(motion, moved, numbers(min(6, size(numbers) + 1):), factor_change, rate, err)
     if (allocated(err)) return
     changes = 0.0_wp
-    factor_change = 0.0_wp
     if (size(numbers) > 0) changes = numbers(:5)
-    if (size(numbers) > 5) call self%law%vary(numbers(6:), motion%t, factor_change, rate, acceleration)
     coupling = self%gear_ratio*self%constant
     coupling_change = changes(5)*self%constant + self%gear_ratio*changes(4)
     ! of the voltage that is left for resistance and inductance

@@ -6,26 +6,26 @@ module mech9_force_load
   use mech9_motion_view, only: motion_view_type
   use mech9_motion_change, only: motion_change_type
   use mech9_force_sum, only: force_sum_type
-  use mech9_load, only: load_type
+  use mech9_factored_load, only: factored_load_type
   implicit none
   private
   public :: force_load_type
 
   !> A force and a torque with components in fixed axes, or in the axes of the link, with which they turn.
-  type, extends(load_type) :: force_load_type
+  type, extends(factored_load_type) :: force_load_type
     integer :: link = 0                    !< number of the link
     real(wp) :: position(3) = 0.0_wp       !< point at which the force acts, in the link's system [m]
     real(wp) :: force(3) = 0.0_wp          !< [N]
     real(wp) :: torque(3) = 0.0_wp         !< [N m]
     logical :: turns_with_link = .false.   !< components in the axes of the link, not fixed ones
   contains
-    procedure :: mark_links
+    procedure :: mark_own_links
     procedure :: is_idle
-    procedure :: apply
+    procedure :: apply_times
     procedure :: potential
-    procedure :: vary
-    procedure :: knows_slopes
-    procedure :: add_slopes
+    procedure :: vary_times
+    procedure :: add_slopes_times
+    procedure :: find_power
     procedure :: numbers
     procedure :: take_numbers
     procedure :: vary_by_numbers
@@ -41,25 +41,21 @@ contains
   end function is_idle
 
   !> Mark its link.
-  pure subroutine mark_links(self, needed)
+  pure subroutine mark_own_links(self, needed)
     class(force_load_type), intent(in) :: self   !< the force load
     logical, intent(inout) :: needed(:)          !< (N) becomes true for the link
 
     needed(self%link) = .true.
-  end subroutine mark_links
+  end subroutine mark_own_links
 
   !> Add force and torque on the link.
-  subroutine apply(self, state, sum, err)
+  subroutine apply_times(self, factor, state, sum, err)
+    real(wp), intent(in) :: factor                      !< by which its forces are multiplied
     class(force_load_type), intent(in) :: self          !< the force load
     type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
     type(force_sum_type), intent(inout) :: sum          !< forces so far; the load is added
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
-    real(wp) :: factor
-
-    factor = 1.0_wp
-    if (allocated(self%law)) call self%find_factor(state%t, factor, err)
-    if (allocated(err)) return
     if (self%turns_with_link) then
       call sum%add_force(state, self%link, self%position, state%links(self%link)%fixed_components(factor*self%force))
       call sum%add_torque(self%link, state%links(self%link)%fixed_components(factor*self%torque))
@@ -67,21 +63,17 @@ contains
       if (any(abs(self%force) > 0.0_wp)) call sum%add_force(state, self%link, self%position, factor*self%force)
       call sum%add_torque(self%link, factor*self%torque)
     end if
-  end subroutine apply
+  end subroutine apply_times
 
   !> Add the derivative of the forces by a parameter: the arm of the force turns, and components in the link's axes turn, too.
-  subroutine vary(self, state, change, changes, err)
+  subroutine vary_times(self, factor, state, change, changes, err)
+    real(wp), intent(in) :: factor                      !< by which its forces are multiplied
     class(force_load_type), intent(in) :: self          !< the force load
     type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
     type(motion_change_type), intent(in) :: change      !< derivative of the motion by the parameter
     type(force_sum_type), intent(inout) :: changes      !< derivatives of forces so far; those of the load are added
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
-    real(wp) :: factor
-
-    factor = 1.0_wp
-    if (allocated(self%law)) call self%find_factor(state%t, factor, err)
-    if (allocated(err)) return
     associate (link => state%links(self%link), of_link => change%links(self%link))
       if (self%turns_with_link) then
         call change%add_force(state, self%link, self%position, link%fixed_components(factor*self%force), &
@@ -91,27 +83,18 @@ contains
         call change%add_force(state, self%link, self%position, factor*self%force, [0.0_wp, 0.0_wp, 0.0_wp], changes)
       end if
     end associate
-  end subroutine vary
-
-  !> The derivatives of its power are known.
-  pure logical function knows_slopes(self)
-    class(force_load_type), intent(in) :: self   !< the force load
-
-    knows_slopes = .true.
-  end function knows_slopes
+  end subroutine vary_times
 
   !> Add the derivatives of the power in a virtual motion: the arm of the force turns, and components in the link's axes turn, too.
-  subroutine add_slopes(self, state, virtual, slopes, err)
+  subroutine add_slopes_times(self, factor, state, virtual, slopes, err)
+    real(wp), intent(in) :: factor                      !< by which its forces are multiplied
     class(force_load_type), intent(in) :: self          !< the force load
     type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
     type(motion_change_type), intent(in) :: virtual     !< the virtual motion
     type(motion_change_type), intent(inout) :: slopes   !< derivatives so far; those of the load are added
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    real(wp) :: force(3), factor
+    real(wp) :: force(3)
 
-    factor = 1.0_wp
-    if (allocated(self%law)) call self%find_factor(state%t, factor, err)
-    if (allocated(err)) return
     associate (link => state%links(self%link), given => virtual%links(self%link), by_link => slopes%links(self%link))
       force = factor*self%force
       if (self%turns_with_link) then
@@ -121,7 +104,27 @@ contains
       end if
       call by_link%add_slope_of_arm(link, self%position, cross(force, given%turn))
     end associate
-  end subroutine add_slopes
+  end subroutine add_slopes_times
+
+  !> The power in a virtual motion: of the force by the shift of its point, of the torque by the turn of the link.
+  subroutine find_power(self, state, virtual, power, err)
+    class(force_load_type), intent(in) :: self          !< the force load
+    type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
+    type(motion_change_type), intent(in) :: virtual     !< the virtual motion
+    real(wp), intent(out) :: power                      !< per unit of the motion [J]
+    type(error_type), allocatable, intent(out) :: err   !< never allocated
+    real(wp) :: force(3), torque(3)
+
+    associate (link => state%links(self%link), given => virtual%links(self%link))
+      force = self%force
+      torque = self%torque
+      if (self%turns_with_link) then
+        force = link%fixed_components(force)
+        torque = link%fixed_components(torque)
+      end if
+      power = dot_product(force, given%of_position(link, self%position)) + dot_product(torque, given%turn)
+    end associate
+  end subroutine find_power
 
   !> The point of the force, the force and the torque.
   pure subroutine numbers(self, values)

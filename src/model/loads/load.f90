@@ -8,6 +8,7 @@ module mech9_load
   use mech9_motion_view, only: motion_view_type
   use mech9_motion_change, only: motion_change_type
   use mech9_force_sum, only: force_sum_type, new_force_sum
+  use mech9_law_over, only: law_over_type
   implicit none
   private
   public :: load_type, load_slot_type, append_loads
@@ -16,11 +17,11 @@ module mech9_load
   type, abstract :: load_type
     type(place_type) :: place       !< place of its group in the data file
     class(law_type), allocatable :: law   !< its forces are multiplied by this law of time, where there is one
+    type(law_over_type), allocatable :: over   !< or by this law over another variable
   contains
     procedure(mark_interface), deferred :: mark_links
     procedure :: mark_coordinates
     procedure :: is_idle
-    procedure :: find_factor
     procedure(apply_interface), deferred :: apply
     procedure(potential_interface), deferred :: potential
     procedure :: vary
@@ -71,18 +72,6 @@ contains
     class(load_type), intent(in) :: self   !< the load
     logical, intent(inout) :: needed(:)    !< (M) becomes true for these coordinates; others stay
   end subroutine mark_coordinates
-
-  !> The factor of the load at a time: 1 without a law. Fails where the law has no value.
-  subroutine find_factor(self, t, factor, err)
-    class(load_type), intent(in) :: self                !< the load
-    real(wp), intent(in) :: t                           !< time [s]
-    real(wp), intent(out) :: factor                     !< by which its forces are multiplied
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    real(wp) :: rate, acceleration
-
-    factor = 1.0_wp
-    if (allocated(self%law)) call self%law%evaluate(t, factor, rate, acceleration, err)
-  end subroutine find_factor
 
   !> Whether the load never moves anything, because it is zero or acts on link 1 alone. This procedure, for kinds that do
   !> not give it, answers that it may.
@@ -199,8 +188,12 @@ contains
     real(wp), allocatable :: of_law(:)
 
     call self%numbers(values)
-    if (.not. (allocated(values) .and. allocated(self%law))) return
-    call self%law%constants(of_law)
+    if (.not. (allocated(values) .and. (allocated(self%law) .or. allocated(self%over)))) return
+    if (allocated(self%law)) then
+      call self%law%constants(of_law)
+    else
+      call self%over%constants(of_law)
+    end if
     if (allocated(of_law)) then
       values = [values, of_law]
     else
@@ -208,33 +201,16 @@ contains
     end if
   end subroutine constants
 
-  !> Add the derivatives of the load's forces by a parameter on which its numbers or those of its law depend, for the present
-  !> motion. Fails where the load has no value.
+  !> Add the derivatives of the load's forces by a parameter on which its numbers depend, for the present motion. Fails where the
+  !> load has no value. This procedure is for loads without a law.
   subroutine vary_numbers(self, change, state, changes, err)
     class(load_type), intent(in) :: self                !< the load
-    real(wp), intent(in) :: change(:)                   !< derivatives of its numbers, then of those of its law
+    real(wp), intent(in) :: change(:)                   !< derivatives of its numbers
     type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
     type(force_sum_type), intent(inout) :: changes      !< derivatives of forces so far; those of the load are added
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    class(load_type), allocatable :: constant
-    type(force_sum_type) :: sum
-    real(wp), allocatable :: of_load(:)
-    real(wp) :: factor, factor_change, rate, acceleration
 
-    call self%numbers(of_load)
-    call self%find_factor(state%t, factor, err)
-    if (.not. allocated(err)) call self%vary_by_numbers(change(:size(of_load)), factor, state, changes, err)
-    if (allocated(err) .or. .not. any(abs(change(size(of_load) + 1:)) > 0.0_wp)) return
-    call self%law%vary(change(size(of_load) + 1:), state%t, factor_change, rate, acceleration)
-    allocate (constant, source=self)
-    deallocate (constant%law)
-    sum = new_force_sum(size(changes%force, 2), size(changes%generalized))
-    call constant%apply(state, sum, err)
-    if (allocated(err)) return
-    changes%force = changes%force + factor_change*sum%force
-    changes%torque = changes%torque + factor_change*sum%torque
-    changes%generalized = changes%generalized + factor_change*sum%generalized
-    changes%any_generalized = changes%any_generalized .or. sum%any_generalized
+    call self%vary_by_numbers(change, 1.0_wp, state, changes, err)
   end subroutine vary_numbers
 
   !> The sums of a load's forces at motions on both sides of the present one. `found` is false where one of them is not finite,

@@ -16,6 +16,9 @@ module mech9_motor
     real(wp) :: q = 0.0_wp          !< the coordinate [rad, m]
     real(wp) :: dq = 0.0_wp         !< its rate [rad/s, m/s]
     real(wp) :: ddq = 0.0_wp        !< its acceleration, where `second` and `demand_rate` are asked for [rad/s^2, m/s^2]
+    real(wp) :: x = 0.0_wp          !< the variable of its law, where this is not the time [unit of the data file]
+    real(wp) :: dx = 0.0_wp         !< its derivative in time
+    real(wp) :: ddx = 0.0_wp        !< its second derivative, where the acceleration counts
     real(wp) :: value = 0.0_wp      !< the state: current [A], or integral of the deviation [rad s, m s]
     integer :: limited = unlocked   !< the limit at which the motor works: -1, 0 for none, 1; `unlocked`: it is found
     logical :: steady = .false.     !< the state has come to rest: `value` does not count
@@ -37,6 +40,8 @@ module mech9_motor
     real(wp) :: rate_by_dq = 0.0_wp
     real(wp) :: rate_by_value = 0.0_wp
     real(wp) :: rate_by_input = 0.0_wp
+    real(wp) :: rate_by_x = 0.0_wp        !< and by the variable of its law and its rate, where this is not the time
+    real(wp) :: rate_by_dx = 0.0_wp
   end type motor_action_type
 
   !> The derivative of the action of a motor by a parameter.
@@ -68,6 +73,9 @@ module mech9_motor
     procedure :: holds_setpoint
     procedure :: state_for
     procedure :: excess_of
+    procedure, non_overridable :: find_law
+    procedure, non_overridable :: vary_law
+    procedure, non_overridable :: change_of_motion
     procedure :: mark_links
     procedure :: mark_coordinates
     procedure :: apply
@@ -128,6 +136,7 @@ contains
     motion%t = view%t
     motion%q = view%q(self%coordinate)
     motion%dq = view%dq(self%coordinate)
+    if (allocated(self%over)) call self%over%follow(view%q, view%dq, [real(wp) ::], motion%x, motion%dx, motion%ddx)
     motion%steady = .not. allocated(view%motor)
     if (motion%steady) return
     motion%value = view%motor(self%number)
@@ -164,12 +173,78 @@ contains
     logical, intent(inout) :: needed(:)     !< (N) unchanged
   end subroutine mark_links
 
-  !> Mark its coordinate.
+  !> The law of the motor, with its derivatives in time: 1 where it has none. Fails where the law has no value.
+  subroutine find_law(self, motion, value, rate, second, slope, bending, err)
+    class(motor_type), intent(in) :: self                !< the motor
+    type(motor_motion_type), intent(in) :: motion        !< with time and variable
+    real(wp), intent(out) :: value                       !< the law
+    real(wp), intent(out) :: rate                        !< its derivative in time
+    real(wp), intent(out) :: second                      !< its second derivative in time
+    real(wp), intent(out) :: slope                       !< its derivative by its variable; 0 for a law of time
+    real(wp), intent(out) :: bending                     !< its second derivative by its variable; 0 for a law of time
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
+
+    value = 1.0_wp
+    rate = 0.0_wp
+    second = 0.0_wp
+    slope = 0.0_wp
+    bending = 0.0_wp
+    if (allocated(self%law)) then
+      call self%law%evaluate(motion%t, value, rate, second, err)
+    else if (allocated(self%over)) then
+      call self%over%law%evaluate(motion%x, value, slope, bending, err)
+      rate = slope*motion%dx
+      second = bending*motion%dx**2 + slope*motion%ddx
+    end if
+  end subroutine find_law
+
+  !> The derivatives of the law and of its rate by a parameter on which its variable depends, and perhaps its numbers. Fails where
+  !> the law has no value.
+  subroutine vary_law(self, motion, moved, numbers, value, rate, err)
+    class(motor_type), intent(in) :: self                !< the motor
+    type(motor_motion_type), intent(in) :: motion        !< with time and variable
+    type(motor_motion_type), intent(in) :: moved         !< derivatives of the variable and of its rate
+    real(wp), intent(in) :: numbers(:)                   !< derivatives of the numbers of the law; of size 0: all are zero
+    real(wp), intent(out) :: value                       !< derivative of the law
+    real(wp), intent(out) :: rate                        !< derivative of its rate in time
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
+    real(wp) :: law, unused, slope, bending, by_numbers, slope_by_numbers
+
+    value = 0.0_wp
+    rate = 0.0_wp
+    if (allocated(self%law)) then
+      if (size(numbers) > 0) call self%law%vary(numbers, motion%t, value, rate, unused)
+    else if (allocated(self%over)) then
+      call self%find_law(motion, law, rate, unused, slope, bending, err)
+      if (allocated(err)) return
+      value = slope*moved%x
+      rate = bending*motion%dx*moved%x + slope*moved%dx
+      if (size(numbers) == 0) return
+      call self%over%law%vary(numbers, motion%x, by_numbers, slope_by_numbers, unused)
+      value = value + by_numbers
+      rate = rate + slope_by_numbers*motion%dx
+    end if
+  end subroutine vary_law
+
+  !> The derivative of the motion of the motor's coordinate and of the variable of its law, from those of all coordinates.
+  pure function change_of_motion(self, q, dq) result(moved)
+    class(motor_type), intent(in) :: self    !< the motor
+    real(wp), intent(in) :: q(:)             !< (M) derivatives of coordinates
+    real(wp), intent(in) :: dq(:)            !< (M) derivatives of their rates
+    type(motor_motion_type) :: moved
+
+    moved%q = q(self%coordinate)
+    moved%dq = dq(self%coordinate)
+    if (allocated(self%over)) call self%over%follow(q, dq, [real(wp) ::], moved%x, moved%dx, moved%ddx)
+  end function change_of_motion
+
+  !> Mark its coordinate, and that on which its law depends.
   pure subroutine mark_coordinates(self, needed)
     class(motor_type), intent(in) :: self   !< the motor
-    logical, intent(inout) :: needed(:)     !< (M) becomes true for the coordinate
+    logical, intent(inout) :: needed(:)     !< (M) becomes true for both coordinates; others stay
 
     needed(self%coordinate) = .true.
+    if (allocated(self%over)) call self%over%mark_coordinates(needed)
   end subroutine mark_coordinates
 
   !> Add the generalized force on the coordinate.
@@ -195,8 +270,7 @@ contains
     type(motor_motion_type) :: moved
     type(motor_change_type) :: motor_change
 
-    moved%q = change%q(self%coordinate)
-    moved%dq = change%dq(self%coordinate)
+    moved = self%change_of_motion(change%q, change%dq)
     if (allocated(change%motor)) moved%value = change%motor(self%number)
     call self%vary_act(motion_of_motor(self, state), moved, [real(wp) ::], motor_change, err)
     if (.not. allocated(err)) call changes%add_generalized(self%coordinate, motor_change%force)

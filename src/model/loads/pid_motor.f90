@@ -41,10 +41,10 @@ contains
     type(motor_motion_type), intent(in) :: motion        !< of its coordinate, and the integral of its deviation
     type(motor_action_type), intent(out) :: action       !< its force, the rate of the integral, and derivatives
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
-    real(wp) :: e, de, dde, demand, demand_rate
+    real(wp) :: e, de, dde, slope, bending, demand, demand_rate
     integer :: limited
 
-    call self%law%evaluate(motion%t, e, de, dde, err)
+    call self%find_law(motion, e, de, dde, slope, bending, err)
     if (allocated(err)) return
     e = e - motion%q
     de = de - motion%dq
@@ -65,6 +65,9 @@ contains
       action%rate = e
       action%rate_by_q = -1.0_wp
       if (limited /= 0) call lead_back()
+      ! the setpoint counts in the deviation against the coordinate
+      action%rate_by_x = -action%rate_by_q*slope - action%rate_by_dq*bending*motion%dx
+      action%rate_by_dx = -action%rate_by_dq*slope
     end if
     demand_rate = self%proportional*de + self%integral*action%rate + self%derivative*dde
     if (self%has_state()) then
@@ -104,17 +107,15 @@ contains
     type(motor_change_type), intent(out) :: change       !< the derivative
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
     type(motor_action_type) :: action
-    real(wp) :: changes(4), e, de, e_change, de_change, unused, demand, demand_change, excess, per_excess
+    real(wp) :: changes(4), e, de, e_change, de_change, unused, slope, bending, demand, demand_change, excess, per_excess
     integer :: limited
 
     call self%act(motion, action, err)
-    if (.not. allocated(err)) call self%law%evaluate(motion%t, e, de, unused, err)
+    if (.not. allocated(err)) call self%find_law(motion, e, de, unused, slope, bending, err)
+    if (.not. allocated(err)) call self%vary_law(motion, moved, numbers(min(5, size(numbers) + 1):), e_change, de_change, err)
     if (allocated(err)) return
     changes = 0.0_wp
-    e_change = 0.0_wp
-    de_change = 0.0_wp
     if (size(numbers) > 0) changes = numbers(:4)
-    if (size(numbers) > 4) call self%law%vary(numbers(5:), motion%t, e_change, de_change, unused)
     e = e - motion%q
     de = de - motion%dq
     e_change = e_change - moved%q

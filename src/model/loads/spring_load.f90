@@ -7,26 +7,26 @@ module mech9_spring_load
   use mech9_motion_view, only: motion_view_type
   use mech9_motion_change, only: motion_change_type
   use mech9_force_sum, only: force_sum_type
-  use mech9_load, only: load_type
+  use mech9_factored_load, only: factored_load_type
   implicit none
   private
   public :: spring_load_type
 
   !> A spring that pulls its ends together with stiffness (length - free length) + damping d(length)/dt.
-  type, extends(load_type) :: spring_load_type
+  type, extends(factored_load_type) :: spring_load_type
     integer :: links(2) = 0                !< numbers of the links of its ends
     real(wp) :: positions(3, 2) = 0.0_wp   !< of its ends, each in its link's system [m]
     real(wp) :: stiffness = 0.0_wp         !< [N/m]
     real(wp) :: free_length = 0.0_wp       !< [m]
     real(wp) :: damping = 0.0_wp           !< [N s/m]
   contains
-    procedure :: mark_links
+    procedure :: mark_own_links
     procedure :: is_idle
-    procedure :: apply
+    procedure :: apply_times
     procedure :: potential
-    procedure :: vary
-    procedure :: knows_slopes
-    procedure :: add_slopes
+    procedure :: vary_times
+    procedure :: add_slopes_times
+    procedure :: find_power
     procedure :: numbers
     procedure :: take_numbers
     procedure :: vary_by_numbers
@@ -46,12 +46,12 @@ contains
   end function is_idle
 
   !> Mark the links of its ends.
-  pure subroutine mark_links(self, needed)
+  pure subroutine mark_own_links(self, needed)
     class(spring_load_type), intent(in) :: self   !< the spring load
     logical, intent(inout) :: needed(:)           !< (N) becomes true for the two links
 
     needed(self%links) = .true.
-  end subroutine mark_links
+  end subroutine mark_own_links
 
   !> Vector from the first end to the second, fixed axes [m].
   pure function span(self, state)
@@ -95,16 +95,14 @@ contains
   end subroutine pull
 
   !> Add the pull at both ends. Fails for a spring with a free length whose ends meet.
-  subroutine apply(self, state, sum, err)
+  subroutine apply_times(self, factor, state, sum, err)
+    real(wp), intent(in) :: factor                      !< by which its forces are multiplied
     class(spring_load_type), intent(in) :: self         !< the spring load
     type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
     type(force_sum_type), intent(inout) :: sum          !< forces so far; the load is added
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    real(wp) :: d(3), rate(3), force(3), factor
+    real(wp) :: d(3), rate(3), force(3)
 
-    factor = 1.0_wp
-    if (allocated(self%law)) call self%find_factor(state%t, factor, err)
-    if (allocated(err)) return
     d = self%span(state)
     rate = 0.0_wp
     if (abs(self%damping) > 0.0_wp) rate = self%span_rate(state)
@@ -113,22 +111,21 @@ contains
     force = factor*force
     call sum%add_force(state, self%links(1), self%positions(:, 1), force)
     call sum%add_force(state, self%links(2), self%positions(:, 2), -force)
-  end subroutine apply
+  end subroutine apply_times
 
   !> Add the derivative of the pull at both ends by a parameter. Fails for a spring with a free length whose ends meet.
-  subroutine vary(self, state, change, changes, err)
+  subroutine vary_times(self, factor, state, change, changes, err)
+    real(wp), intent(in) :: factor                      !< by which its forces are multiplied
     class(spring_load_type), intent(in) :: self         !< the spring load
     type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
     type(motion_change_type), intent(in) :: change      !< derivative of the motion by the parameter
     type(force_sum_type), intent(inout) :: changes      !< derivatives of forces so far; those of the load are added
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    real(wp) :: d(3), rate(3), d_change(3), rate_change(3), force(3), force_change(3), factor
+    real(wp) :: d(3), rate(3), d_change(3), rate_change(3), force(3), force_change(3)
 
     d = self%span(state)
     rate = self%span_rate(state)
-    factor = 1.0_wp
-    if (allocated(self%law)) call self%find_factor(state%t, factor, err)
-    if (.not. allocated(err)) call self%pull(d, rate, force, err)
+    call self%pull(d, rate, force, err)
     if (allocated(err)) return
     force = factor*force
     associate (i => self%links(1), k => self%links(2), at => self%positions)
@@ -139,7 +136,7 @@ contains
       call change%add_force(state, i, at(:, 1), force, force_change, changes)
       call change%add_force(state, k, at(:, 2), -force, -force_change, changes)
     end associate
-  end subroutine vary
+  end subroutine vary_times
 
   !> Derivative of the pull. At length zero, a spring without free length has its stiffness in all directions, and its damper
   !> acts in all of them.
@@ -165,30 +162,22 @@ contains
              + tension*e_change
   end function change_of_pull
 
-  !> The derivatives of its power are known.
-  pure logical function knows_slopes(self)
-    class(spring_load_type), intent(in) :: self   !< the spring load
-
-    knows_slopes = .true.
-  end function knows_slopes
-
   !> Add the derivatives of the power in a virtual motion, the pull times the approach of the ends. Fails for a spring with a free
   !> length whose ends meet.
-  subroutine add_slopes(self, state, virtual, slopes, err)
+  subroutine add_slopes_times(self, factor, state, virtual, slopes, err)
+    real(wp), intent(in) :: factor                      !< by which its forces are multiplied
     class(spring_load_type), intent(in) :: self         !< the spring load
     type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
     type(motion_change_type), intent(in) :: virtual     !< the virtual motion
     type(motion_change_type), intent(inout) :: slopes   !< derivatives so far; those of the load are added
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    real(wp) :: d(3), rate(3), force(3), approach(3), by_span(3), by_rate(3), factor, sign
+    real(wp) :: d(3), rate(3), force(3), approach(3), by_span(3), by_rate(3), sign
     integer :: e
 
     d = self%span(state)
     rate = 0.0_wp
     if (abs(self%damping) > 0.0_wp) rate = self%span_rate(state)
-    factor = 1.0_wp
-    if (allocated(self%law)) call self%find_factor(state%t, factor, err)
-    if (.not. allocated(err)) call self%pull(d, rate, force, err)
+    call self%pull(d, rate, force, err)
     if (allocated(err)) return
     associate (i => self%links(1), j => self%links(2), at => self%positions)
       approach = virtual%links(i)%of_position(state%links(i), at(:, 1)) - virtual%links(j)%of_position(state%links(j), at(:, 2))
@@ -203,7 +192,25 @@ contains
         call slopes%links(k)%add_slope_of_arm(state%links(k), at, cross(virtual%links(k)%turn, sign*force))
       end associate
     end do
-  end subroutine add_slopes
+  end subroutine add_slopes_times
+
+  !> The power in a virtual motion: the pull times the approach of the ends. Fails for a spring with a free length whose ends meet.
+  subroutine find_power(self, state, virtual, power, err)
+    class(spring_load_type), intent(in) :: self         !< the spring load
+    type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
+    type(motion_change_type), intent(in) :: virtual     !< the virtual motion
+    real(wp), intent(out) :: power                      !< per unit of the motion [J]
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    real(wp) :: force(3)
+
+    power = 0.0_wp
+    call self%pull(self%span(state), self%span_rate(state), force, err)
+    if (allocated(err)) return
+    associate (i => self%links(1), j => self%links(2), at => self%positions)
+      power = dot_product(force, virtual%links(i)%of_position(state%links(i), at(:, 1)) &
+                          - virtual%links(j)%of_position(state%links(j), at(:, 2)))
+    end associate
+  end subroutine find_power
 
   !> Derivatives of the product of the pull with a vector, by the span and by its rate: change_of_pull transposed.
   pure subroutine slopes_of_pull(spring, d, rate, vector, by_span, by_rate)
@@ -311,7 +318,7 @@ contains
     real(wp) :: d(3), d_change(3), length, stretch, stretch_change
 
     energy = 0.0_wp
-    if (allocated(self%law)) return
+    if (allocated(self%law) .or. allocated(self%over)) return
     d = self%span(state)
     associate (i => self%links(1), k => self%links(2), at => self%positions)
       d_change = change%links(k)%of_position(state%links(k), at(:, 2)) - change%links(i)%of_position(state%links(i), at(:, 1))
@@ -329,12 +336,13 @@ contains
     energy = energy + self%stiffness*stretch*stretch_change
   end function varied_potential
 
-  !> Energy of the spring [J].
+  !> Energy of the spring [J]; the work of one that follows a law counts as put in.
   pure real(wp) function potential(self, state)
     class(spring_load_type), intent(in) :: self   !< the spring load
     type(motion_view_type), intent(in) :: state   !< present motion of links and coordinates
 
     potential = 0.0_wp
-    if (.not. allocated(self%law)) potential = 0.5_wp*self%stiffness*(norm2(self%span(state)) - self%free_length)**2
+    if (allocated(self%law) .or. allocated(self%over)) return
+    potential = 0.5_wp*self%stiffness*(norm2(self%span(state)) - self%free_length)**2
   end function potential
 end module mech9_spring_load

@@ -263,7 +263,7 @@ contains
     type(document_type) :: document
     type(model_type) :: model
     type(diagnostics_type) :: diagnostics
-    real(wp) :: factor
+    real(wp) :: factor, rate, acceleration
     type(error_type), allocatable :: err
 
     call checked(tester, "&load kind='coordinate', coordinate=1, stiffness=5, rest=90, damping=2, force=3 /"//eol// &
@@ -289,7 +289,7 @@ contains
     class default
       call tester%is_true(.false., 'the kind of the second load')
     end select
-    call model%mechanism%loads(3)%load%find_factor(3.0_wp, factor, err)
+    call model%mechanism%loads(3)%load%law%evaluate(3.0_wp, factor, rate, acceleration, err)
     call tester%near(factor, 7.0_wp, tol, 'a law of time')
   end subroutine loads
 
@@ -305,7 +305,8 @@ contains
     call checked(tester, "&motor coordinate=1, kind='dc', voltage=24, resistance=0.5, constant=0.05, gear_ratio=20 /"//eol// &
                  "&motor coordinate=4, kind='pid', proportional=50, derivative=5, limit=8, setpoint=1.25 /"//eol// &
                  "&motor coordinate=1, kind='pid', proportional=50, setpoint=90 /"//eol, document, model, diagnostics)
-    call read_motors(document, model%mechanism%pairs, degrees, list, diagnostics)
+    model%mechanism%units = degrees
+    call read_motors(document, model%mechanism, list, diagnostics)
     call tester%is_true(.not. diagnostics%failed() .and. size(list) == 3, 'three motors')
     if (size(list) /= 3) return
     select type (motor => list(1)%motor)
@@ -327,7 +328,7 @@ contains
     call list(3)%motor%law%evaluate(1.0_wp, q, dq, ddq, err)
     call tester%near(q, pi/2.0_wp, tol, 'a setpoint in degrees')
     call checked(tester, "&motor coordinate=1, kind='dc', resistance=0.5, constant=0.05 /"//eol, document, model, diagnostics)
-    call read_motors(document, model%mechanism%pairs, degrees, list, diagnostics)
+    call read_motors(document, model%mechanism, list, diagnostics)
     call tester%is_true(diagnostics%failed(), 'a motor without voltage')
   end subroutine motors
 
