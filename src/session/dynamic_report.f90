@@ -9,6 +9,7 @@ module mech9_dynamic_report
   use mech9_hdf5_sink, only: hdf5_sink_type
   use mech9_plan, only: plan_type
   use mech9_law_notes, only: print_jumps
+  use mech9_effect_notes, only: print_effects
   use mech9_model_motion, only: model_motion_type
   use mech9_run_outcome, only: run_outcome_type
   use mech9_integrator, only: integration_statistics_type
@@ -70,6 +71,7 @@ contains
     end do
     call print_events(unit, simulation%events)
     call print_jumps(unit, simulation%model)
+    call print_effects(unit, simulation%model, .true.)
     if (table_path /= '' .and. table_path /= '-') write (unit, '(2a)') 'table: ', table_path
   end subroutine print_report
 

@@ -191,8 +191,11 @@ def test_axes_that_are_nearly_parallel(s):
     ('90, 1', 'rad', 'the drive of coordinate 1 has the angle 90 rad, more than a turn'),
     ('0, 6.28', 'deg', 'the drive of coordinate 1 has the rate 6.28 degrees a second'),
     ('0, -3.14159', 'deg', 'the rate -3.14159 degrees a second'),
-    ('0, 10', 'rad', None), ('1.2, 314.16', 'rad', None), ('0, 360', 'deg', None), ('0, 0', 'deg', None)],
-    ids=['degrees_as_radians', 'angle_in_degrees', 'radians_as_degrees', 'half_a_turn_in_radians', 'fast', 'motor', 'degrees', 'still'])
+    ('0, 10', 'rad', None), ('1.2, 314.16', 'rad', None), ('0, 360', 'deg', None),
+    ('0, 0', 'deg', 'the drive of coordinate 1 stands still, so that nothing moves'),
+    ('1.5708, 20', 'deg', 'the drive of coordinate 1 has the angle 1.5708 degrees')],
+    ids=['degrees_as_radians', 'angle_in_degrees', 'radians_as_degrees', 'half_a_turn_in_radians', 'fast', 'motor', 'degrees', 'still',
+         'angle_in_radians'])
 def test_notes_on_drives(s, coefficients, unit, words):
     text = f"&mechanism angle_unit='{unit}' /\n" + FOUR_BAR.replace('coefficients=0, 6.5', f'coefficients={coefficients}')
     printed = s.check(s.mech9k, text).stdout
@@ -210,6 +213,43 @@ def test_notes_on_rates_and_masses(s, velocity, rod, words):
     done = s.check(s.mech9d, text)
     s.checks.equal('note:' in done.stdout, words is not None, 'a note where it is due')
     s.checks.true(words is None or words in done.stdout, f'says {words}', done.stdout)
+
+
+HEAVY = FOUR_BAR + '&body link=3, mass=1, centre=0.6,0.1,0, inertia=0,0,0.1,0,0,0 /\n'
+EFFECTS = [
+    ('&gravity acceleration=0,0,-9.81 /', 'gravity acts across the plane of the mechanism and moves nothing'),
+    ('&gravity acceleration=0,-9.81,-1 /', None),
+    ("&load kind='torque', link=3, torque=0,0,1 /\n&load kind='torque', link=3, torque=1,2,0 /", 'the torque of load 2 is about an axis in'),
+    ("&load kind='torque', link=3, torque=1,2,0.1, frame='link' /", None),
+    ("&load kind='force', link=3, force=0,0,-5 /", 'the force of load 1 acts across the plane of the mechanism and moves nothing'),
+    ("&load kind='force', link=3, force=0,1,-5 /", None), ("&load kind='force', link=3, force=0,0,0 /", None),
+    ("&load kind='force', link=3, force=1,0,0, law='harmonic', amplitude=1, angular_frequency=6.2832 /",
+     'the law of load 1 has the angular frequency 6.2832 degrees a second'),
+    ("&load kind='force', link=3, force=1,0,0, law='harmonic', amplitude=1, angular_frequency=360 /", None)]
+
+
+@pytest.mark.parametrize('group, words', EFFECTS)
+def test_notes_on_what_has_no_effect(s, group, words):
+    """In check and run, once in each. Link 2 and link 4 have no mass, which is another note."""
+    text = "&mechanism angle_unit='deg' /\n" + HEAVY.replace('coefficients=0, 6.5', 'coefficients=0, 65') + group + '\n'
+    text += ''.join(f'&body link={link}, mass=0.1 /\n' for link in (2, 4))
+    printed = s.check(s.mech9d, text).stdout
+    s.checks.equal(printed.count('note:'), int(words is not None), f'{group}: a note where it is due')
+    s.checks.true(words is None or words in printed, f'says {words}', printed)
+    if words is None or 'frequency' in words:
+        return
+    done = run(s.mech9d, os.path.join(s.folder, 'case.nml'), '--table', os.path.join(s.folder, 'a.dat'))
+    s.checks.equal(done.stderr.count(words) + done.stdout.count(words), 1, f'a run says {words} once')
+
+
+def test_notes_on_lengths_and_drives(s):
+    wrong = FOUR_BAR.replace('point=0.3,0,0', 'point=0.0003,0,0')
+    words = 'note: axes are 1 m apart in link 3 and 0.0003 m in link 2'
+    s.checks.true(words in s.check(s.mech9k, wrong).stdout, f'says {words}')
+    s.checks.true('apart' not in s.check(s.mech9k, FOUR_BAR).stdout, 'lengths of one size')
+    s.checks.true('apart' not in s.check(s.mech9k, SLIDER_CRANK).stdout, 'nor of a slider-crank')
+    beside = FOUR_BAR.replace('coefficients=0, 6.5', 'coefficients=0.1, 0') + '&time end=0, intervals=0 /\n'
+    s.checks.true('stands still' not in s.check(s.mech9k, beside).stdout, 'a single position needs no motion')
 
 
 def test_body_of_the_frame(s):

@@ -7,8 +7,11 @@ module mech9_check_notes
   use mech9_partition, only: free_coordinate
   use mech9_mechanism, only: mechanism_type
   use mech9_model, only: model_type
-  use mech9_result_units, only: unit_of
+  use mech9_result_units, only: unit_of, rate_unit_of, rate_unit_name
+  use mech9_law, only: law_type
+  use mech9_harmonic_law, only: harmonic_law_type
   use mech9_law_notes, only: print_jumps
+  use mech9_effect_notes, only: print_effects
   use mech9_link_dimensions, only: link_dimension_type, link_dimensions
   implicit none
   private
@@ -18,7 +21,7 @@ module mech9_check_notes
   integer, parameter :: longest_list = 24
   !> A rate from `fast` on that is a multiple of `whole` [rad/s] was probably meant in degrees.
   real(wp), parameter :: fast = 45.0_wp, whole = 15.0_wp
-  !> An angle in degrees may have a number that is so near, relatively, to that of a few quarters of a turn in radians.
+  !> An angle or a rate in degrees may have a number that is so near, relatively, to that of a few quarters of a turn in radians.
   !> It was probably meant in radians: pi is often rounded to 3.14.
 !> meant in radians: pi is often rounded to 3.14.
   real(wp), parameter :: rounded_pi = 1.0e-3_wp
@@ -47,8 +50,18 @@ contains
       k = model%problem%drives(i)%drive%coordinate
       call model%problem%drives(i)%drive%evaluate(model%request%time%start, q, dq, ddq, err)
       if (.not. allocated(err)) call note_angle(unit, model%mechanism, k, 'the drive', q, dq)
+      call note_frequency(unit, model%mechanism, model%problem%drives(i)%drive)
+    end do
+    do i = 1, size(model%mechanism%loads)
+      if (allocated(model%mechanism%loads(i)%load%law)) &
+        call note_frequency(unit, model%mechanism, model%mechanism%loads(i)%load%law, 'load '//to_text(i))
+    end do
+    do i = 1, size(model%mechanism%motors)
+      if (allocated(model%mechanism%motors(i)%motor%law)) &
+        call note_frequency(unit, model%mechanism, model%mechanism%motors(i)%motor%law)
     end do
     call print_jumps(unit, model)
+    call print_effects(unit, model, with_masses)
   end subroutine print_notes
 
   !> Note an angle or a rate that seems to be in the other unit.
@@ -60,7 +73,7 @@ contains
     real(wp), intent(in) :: q                      !< value of the coordinate [rad]
     real(wp), intent(in) :: dq                     !< its rate [rad/s]
     character(len=:), allocatable :: begin
-    real(wp) :: quarters
+    real(wp) :: rate
 
     if (.not. mechanism%pairs(k)%pair%angular .or. mechanism%pairs(k)%pair%user_calls() > 0) return
     begin = 'note: '//what//' of coordinate '//to_text(k)//' has '
@@ -74,11 +87,48 @@ contains
       end if
       return
     end if
-    quarters = dq/radians_per_degree/(0.5_wp*pi)
-    if (nint(min(abs(quarters), 100.0_wp)) < 1 .or. abs(quarters) > most_quarters + 0.5_wp) return
-    if (abs(quarters - anint(quarters)) <= rounded_pi*abs(quarters)) write (unit, '(a)') begin//'the rate '// &
-      to_text(dq/radians_per_degree)//' degrees a second; where radians are meant, leave out angle_unit=''deg'''
+    rate = dq/rate_unit_of(mechanism, k)
+    if (is_of_quarters(rate) .and. rate_unit_name(mechanism, k) == 'deg/s') then
+      write (unit, '(a)') begin//'the rate '//to_text(rate)//' degrees a second; where radians are meant, leave out '// &
+        'angle_unit=''deg'''
+    else if (is_of_quarters(rate) .and. rate_unit_name(mechanism, k) == 'rpm') then
+      write (unit, '(a)') begin//'the rate '//to_text(rate)//' rpm; where radians a second are meant, give rate_unit=''rad/s'''
+    else if (is_of_quarters(q/radians_per_degree)) then
+      write (unit, '(a)') begin//'the angle '//to_text(q/radians_per_degree)//' degrees; where radians are meant, leave out '// &
+        'angle_unit=''deg'''
+    end if
   end subroutine note_angle
+
+  !> Note an angular frequency in degrees that seems to be in radians.
+  subroutine note_frequency(unit, mechanism, law, owner)
+    integer, intent(in) :: unit                        !< Fortran unit to write to
+    type(mechanism_type), intent(in) :: mechanism      !< the mechanism
+    class(law_type), intent(in) :: law                 !< a law of time
+    character(len=*), intent(in), optional :: owner    !< of the law; what the law knows of it unless given
+    character(len=:), allocatable :: name
+    real(wp) :: frequency
+
+    if (mechanism%units%rate_name /= 'deg/s') return
+    name = trim(law%owner())
+    if (present(owner)) name = owner
+    select type (law)
+    type is (harmonic_law_type)
+      frequency = law%angular_frequency/mechanism%units%rate
+      if (is_of_quarters(frequency)) write (unit, '(a)') 'note: the law of '//name//' has the angular frequency '// &
+        to_text(frequency)//' degrees a second; where radians are meant, leave out angle_unit=''deg'''
+    end select
+  end subroutine note_frequency
+
+  !> Whether a number of degrees is that of a few quarters of a turn in radians.
+  pure logical function is_of_quarters(number)
+    real(wp), intent(in) :: number   !< [degrees, degrees per second]
+    real(wp) :: quarters
+
+    quarters = number/(0.5_wp*pi)
+    is_of_quarters = .false.
+    if (nint(min(abs(quarters), 100.0_wp)) < 1 .or. abs(quarters) > most_quarters + 0.5_wp) return
+    is_of_quarters = abs(quarters - anint(quarters)) <= rounded_pi*abs(quarters)
+  end function is_of_quarters
 
   !> Note a body of the frame, and links without mass beside links with mass.
   subroutine note_bodies(unit, mechanism)
