@@ -268,6 +268,7 @@ class Units:
         if dict(groups)['mechanism'].get('angle_unit') == ['deg']:
             # angles of tables in files stay: only files without any are converted to rad first
             if any('file' in items for _, items in groups):
+                self.checks.left_out('a table of this file counts in degrees')
                 return
             groups = [(group, dict(items)) for group, items in groups]
             into_radians(groups)
