@@ -419,6 +419,14 @@ def test_refused_variables(case):
     case.refused(FOUR_BAR + motor.format('P.x'), 3, 'the law of a motor is over t, a coordinate')
 
 
+def test_names_of_pairs_stand_for_coordinates(case):
+    load = "&load kind='torque', link=2, torque=0,0,1, law='harmonic', amplitude=2, angular_frequency=5, over='{}' /\n&time end=0.2, intervals=2 /\n"
+    named = FOUR_BAR.replace('&pair coordinate=4,', "&pair coordinate=4, name='rocker',")
+    numbered = case.table(FOUR_BAR + load.format('dq4'))
+    by_name = case.table(named + load.format('rocker.dq'))
+    case.checks.true(all((numbered[name] == by_name[name]).all() for name in numbered), 'rocker.dq is dq4')
+
+
 def test_law_over_t_is_a_law_of_time(case):
     text = FOUR_BAR + "&load kind='torque', link=2, torque=0,0,1, law='harmonic', amplitude=2, angular_frequency=5{} /\n&time end=0.2, intervals=2 /\n"
     plain, named = case.table(text.format('')), case.table(text.format(", over='t'"))

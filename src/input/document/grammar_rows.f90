@@ -44,7 +44,6 @@ module mech9_grammar_rows
   !> The numbers under a name are those of links, or of coordinates: names may stand in their places.
   integer, parameter :: refers_to_link = 1, refers_to_coordinate = 2
 
-
   !> Names that belong to all laws but a constant, and the meaning of that of their variable.
   character(len=*), parameter :: any_law = 'law:polynomial law:harmonic law:table law:segments'
   character(len=*), parameter :: variable_of_law = 'variable of the law in place of t: a coordinate, a rate (dq1) or a point '// &
