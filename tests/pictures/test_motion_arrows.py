@@ -1,5 +1,5 @@
 """Arrows of velocities and accelerations: each begins in its point, and has the direction and, beside the longest one, the length that the
-columns of the same run give.
+columns of the same run give. The velocity pole of a coupler is drawn where the lines of crank and rocker meet.
 """
 from xml.etree import ElementTree
 
@@ -88,3 +88,35 @@ def test_arrows_are_inside(checks, mech9d, tmp_path):
         checks.true((places >= 0).all() and (places <= [width, height]).all(), f'{name}: they are inside')
     done = run(mech9d, example('pendulum'), '--check', '--sketch', 'c.svg', '--set', 'output.velocity_arrows=.true.', folder=tmp_path)
     checks.true('without effect: velocity_arrows' in done.stderr, 'a check makes no run', done.stderr)
+
+
+def test_velocity_poles(checks, mech9k, tmp_path):
+    """The pole of the coupler is on both lines, and is hidden where it is far away; a sketch and an SVG film have it, too."""
+    done = run(mech9k, example('four_bar_homework'), '--quiet', '--no-write', '--animate', 'film.html', '--animate', 'film.svg', '--sketch',
+               'start.svg', folder=tmp_path)
+    checks.equal(done.returncode, 0, done.stderr)
+    text = text_of(tmp_path / 'film.html')
+    film, svg = film_of(text), picture_of(text)
+    pole, = [group for group in svg.iter(SVG + 'g') if group.get('class') == 'pole']
+    checks.equal(pole.findtext(SVG + 'title'), 'velocity pole of link 3', 'named under the pointer')
+    item = film['items'][int(pole.get('data-i')) - 1]
+    shown = np.array([letter == '1' for letter in film['holds'][item['state'] - 1]])
+    places = [nodes_of(film, frame) for frame in range(len(film['times']))]
+    joints = {group.get('data-joint'): film['items'][int(group.get('data-i')) - 1]['nodes'][0] for group in svg.iter(SVG + 'g')
+              if group.get('data-joint')}
+    rings = [np.array([place[joints[name]][:2] for place in places]) for name in ('q1', 'q2', 'q3', 'q4')]
+    at = np.array([place[item['nodes'][0]][:2] for place in places])
+    for foot, end, name in ((rings[0], rings[1], 'crank'), (rings[3], rings[2], 'rocker')):
+        along = (end - foot) / np.linalg.norm(end - foot, axis=1)[:, None]
+        off = along[:, 0] * (at - foot)[:, 1] - along[:, 1] * (at - foot)[:, 0]
+        # places are rounded to a hundred-thousandth of the width, and lines of 40 mm are seen over 200 mm
+        checks.true(np.abs(off[shown]).max() < 1e-4, f'it is on the line of the {name}', np.abs(off[shown]).max())
+    _, _, width, height = map(float, svg.get('viewBox').split())
+    page = np.array(film['middle']) + film['scale'] * at * [1, -1]
+    inside = (page > 0).all(axis=1) & (page < [width, height]).all(axis=1)
+    checks.true(10 < shown.sum() < len(shown) - 10, 'it is shown in some frames', shown.sum())
+    checks.true((inside[shown]).all(), 'only on the page')
+    first = [group for group in ElementTree.parse(tmp_path / 'start.svg').getroot().iter(SVG + 'g') if group.get('class') == 'pole']
+    checks.equal(len(first), int(shown[0]), 'the sketch shows it if it is on the page')
+    moving = [group for group in ElementTree.parse(tmp_path / 'film.svg').getroot().iter(SVG + 'g') if group.get('class') == 'pole']
+    checks.equal(len(moving), 1, 'the SVG that moves has it')

@@ -11,7 +11,7 @@ module mech9_gif_film
   use mech9_projection, only: projection_type
   use mech9_scene, only: scene_type, item_type, closed_path, facing_path, mark, label, in_pin, in_cross, in_cam, in_stop, &
                          in_pushed, as_stand, as_ring, as_ball, as_dot, as_centre, as_free, as_name, as_number, &
-                         as_input, as_leader, as_coil, as_cup, as_stuck, as_sphere, in_surface, &
+                         as_input, as_leader, as_coil, as_cup, as_stuck, as_sphere, as_pole, in_surface, &
                          in_pairs
   use mech9_drawing, only: drawing_type, draw_frame, drawing_order, outline_of
   use mech9_picture_style, only: style_type, styles, dark_colours, light_colours, signal, light_signal, colour_of, ink, &
@@ -363,6 +363,10 @@ contains
       call script%circle(at, 3.4_wp*s, signal, ink, 0.5_wp)
     case (as_sphere)
       call script%circle(at, s*item%shift(1), light_colours(colour_of(item%link)), thin, 1.2_wp)
+    case (as_pole)
+      call script%circle(at, 4.0_wp*s, white, ink, 1.5_wp)
+      call script%polyline(reshape([at - [9.0_wp*s, 0.0_wp], at + [9.0_wp*s, 0.0_wp]], [2, 2]), ink, 1.4_wp)
+      call script%polyline(reshape([at - [0.0_wp, 9.0_wp*s], at + [0.0_wp, 9.0_wp*s]], [2, 2]), ink, 1.4_wp)
     case (as_leader)
       call script%polyline(reshape([at, at + s*item%shift], [2, 2]), thin, 0.8_wp)
     case (as_coil)

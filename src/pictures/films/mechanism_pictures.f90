@@ -130,7 +130,7 @@ contains
     shown = film
     if (size(arrows) > 0) then
       call take_arrows(arrows, film, projection, shown)
-      call add_arrows(arrows, shown, scene)
+      call add_arrows(arrows, shown, projection, scene)
     end if
     if (.not. moving) then
       call save_sketch(path, model%mechanism%title, scene, shown, projection, 1, err)

@@ -6,7 +6,7 @@ module mech9_picture_style
   use mech9_kinds, only: wp, pi
   use mech9_xml_text, only: decimal
   use mech9_scene, only: in_cam, as_stand, as_ring, as_ball, as_dot, as_centre, as_free, as_leader, in_damper, as_coil, as_cup, &
-    in_force, in_bracket, as_stuck, in_velocity, in_rolling, as_sphere, in_target
+    in_force, in_bracket, as_stuck, in_velocity, in_rolling, as_sphere, in_target, as_pole
   implicit none
   private
   public :: style_type, styles, dark_colours, light_colours, signal, light_signal, colour_of, ink, style_sheet, mark_svg, &
@@ -55,7 +55,8 @@ module mech9_picture_style
     style_type('force', '#c00000', 2.2_wp), style_type('stop', '', 3.0_wp, .true.), &
     style_type('pushed', signal, 3.0_wp, .true.), style_type('bracket', '', 1.5_wp), style_type('stuck'), &
     style_type('velocity', '#1a7a1a', 2.2_wp), style_type('acceleration', '#7a1fa2', 2.2_wp), style_type('surface', '', 1.2_wp), &
-    style_type('rolling', '', 1.1_wp), style_type('sphere'), style_type('target', '#a00000', 1.8_wp)]
+    style_type('rolling', '', 1.1_wp), style_type('sphere'), style_type('target', '#a00000', 1.8_wp), &
+    style_type('pole')]
 
   !> The width of an edge [px].
   real(wp), parameter, public :: edge = 1.2_wp
@@ -168,6 +169,8 @@ contains
       svg = '<circle r="4"/>'
     case (as_sphere)
       svg = '<circle r="'//decimal(direction(1))//'"/>'
+    case (as_pole)
+      svg = '<circle class="w" r="4"/><path class="s" d="M-9 0H9M0 -9V9"/>'
     case (as_leader)
       svg = '<path class="e" d="M0 0L'//decimal(direction(1))//' '//decimal(direction(2))//'"/>'
     case (as_coil)

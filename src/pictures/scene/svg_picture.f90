@@ -8,7 +8,7 @@ module mech9_svg_picture
   use mech9_projection, only: projection_type
   use mech9_scene, only: scene_type, item_type, closed_path, facing_path, mark, label, in_pairs, in_stop, in_pushed, &
                          as_stuck, in_force, in_velocity, in_acceleration, in_surface, as_sphere, &
-                         in_target
+                         in_target, as_pole
   use mech9_drawing, only: drawing_type, draw_frame, drawing_order, outline_of
   use mech9_picture_style, only: styles, colour_of, style_sheet, mark_svg
   use mech9_page, only: page_type
@@ -63,7 +63,9 @@ contains
     order = drawing_order(scene, drawing)
     call page%line('<g id="scene">')
     do i = 1, size(order)
-      if (is_turned .or. scene%items(order(i))%state == 0) &
+      ! a stop that pushes is shown by films alone
+      if (is_turned .or. scene%items(order(i))%state == 0 .or. &
+          (scene%items(order(i))%style == as_pole .and. scene%shows(scene%items(order(i)), frame))) &
         call put_item(scene%items(order(i)), order(i), drawing, projection%symbol, page)
     end do
     call page%line('</g>')
@@ -126,11 +128,11 @@ contains
     if (allocated(item%text) .and. item%shape /= label .and. .not. has_tooltip(item)) tag = tag//' data-joint="'//item%text//'"'
   end function opening_of
 
-  !> Whether a browser shows the text of an item under the pointer: it is a stop, a mark of friction, an arrow, a contact or a pose.
+  !> Whether a browser shows the text of an item under the pointer: it is a stop, a mark of friction, an arrow, a contact, a pose or a pole.
   pure logical function has_tooltip(item)
     type(item_type), intent(in) :: item  !< one thing to draw
     integer, parameter :: with_tooltips(*) = [in_stop, in_pushed, as_stuck, in_force, in_velocity, in_acceleration, in_surface, &
-                                              as_sphere, in_target]
+                                              as_sphere, in_target, as_pole]
 
     has_tooltip = allocated(item%text) .and. any(item%style == with_tooltips)
   end function has_tooltip
