@@ -117,11 +117,13 @@ contains
     type(draft_type), intent(in) :: draft        !< the data file so far
     integer, intent(in) :: kind                  !< refers_to_link or refers_to_coordinate
     character(len=*), intent(in) :: word         !< a word of an answer
-    character(len=:), allocatable :: number, group, key, given
+    character(len=:), allocatable :: number, group, key, given, name
     integer :: i
 
     number = word
-    if (len(word) == 0) return
+    name = word
+    if (len(name) > 2 .and. scan(word, '''"') == 1) name = word(2:len(word) - 1)
+    if (len(name) == 0) return
     group = 'pair'
     key = 'coordinate'
     if (kind == refers_to_link) group = 'link'
@@ -129,7 +131,7 @@ contains
     do i = 1, draft%count_of(group)
       given = draft%value(group, i, 'name')
       if (len(given) < 3) cycle
-      if (word /= given .and. word /= given(2:len(given) - 1)) cycle
+      if (name /= given(2:len(given) - 1)) cycle
       if (draft%has(group, i, key)) number = draft%value(group, i, key)
     end do
   end function number_called

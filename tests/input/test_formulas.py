@@ -1,5 +1,7 @@
 """Parameters that are formulas of others: values against Python's own evaluation of random formulas, derivatives against closed forms
 and differences of runs, studies and searches against runs with the numbers written, and the places of errors.
+
+Compares the program with itself: derivatives with differences of runs, and formulas with their numbers.
 """
 import math
 import os

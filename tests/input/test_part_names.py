@@ -1,5 +1,7 @@
 """Names of links and pairs: a file with names gives the bits of the same file with numbers, --set finds groups by names, and wrong names are
 told with their place.
+
+Compares the program with itself: names with numbers.
 """
 import os
 

@@ -1,8 +1,12 @@
-"""Names of links and pairs in what the programs write: columns by --names, plots, --check, drawings, graphs, reports, conversations."""
+"""Names of links and pairs in what the programs write: columns by --names, plots, --check, drawings, graphs, reports, HDF5 files.
+
+Compares the program with itself: columns by names with those by numbers.
+"""
 import json
 import os
 
 import numpy as np
+import pytest
 
 from mech9_cases import read_table, run, text_of
 
@@ -83,3 +87,13 @@ def test_reports_have_names(checks, mech9k, tmp_path):
     run(mech9k, write(tmp_path), '--table', 'case.dat', '--report', 'case.json', folder=tmp_path)
     report = json.loads(text_of(os.path.join(tmp_path, 'case.json')))
     checks.true(report['link_names'] == ['', 'crank', '', 'rocker'] and report['coordinate_names'] == ['A', '', 'C', 'D'], 'names by numbers')
+
+
+def test_hdf5_files_have_names(checks, mech9k, tmp_path):
+    h5py = pytest.importorskip('h5py')
+    done = run(mech9k, write(tmp_path), '--hdf5', 'case.h5', folder=tmp_path)
+    checks.true(done.returncode == DONE, f'the file is written: {done.stderr[:300]}')
+    with h5py.File(os.path.join(tmp_path, 'case.h5')) as file:
+        checks.true([text.decode().strip() for text in file['coordinate_name'][()]] == ['A', '', 'C', 'D'], 'names of pairs')
+        checks.true([text.decode().strip() for text in file['structure/link_name'][()]] == ['', 'crank', '', 'rocker'], 'names of links')
+        checks.true('q' in file and file['q'].shape == (9, 4), 'columns stay numbered')

@@ -4,7 +4,9 @@
 module mech9_part_name_check
   use mech9_text, only: to_text, nearest_name
   use mech9_kinds, only: wp, long
-  use mech9_part_names, only: part_names_type, longest_part_name, longest_called, link_named, coordinate_named, number_columns
+  use mech9_part_names, only: part_names_type, longest_part_name, longest_called, has_names, link_named, coordinate_named, &
+    number_columns
+  use mech9_name_table, only: name_table_type
   use mech9_source, only: span_type
   use mech9_grammar_rows, only: refers_to, refers_to_link, refers_to_coordinate
   use mech9_document, only: document_type, group_type, value_type, value_integer, value_text, value_word, value_bad
@@ -27,15 +29,16 @@ contains
     type(diagnostics_type), intent(inout), optional :: diagnostics  !< gets the errors
     character(len=longest_part_name), allocatable :: links(:)
     character(len=longest_called), allocatable :: coordinates(:)
+    type(name_table_type) :: owners(2)
     integer :: i, most
 
     most = most_freedoms*count([(document%groups(i)%name == 'pair', i=1, size(document%groups))])
     allocate (links(0), coordinates(0))
     do i = 1, size(document%groups)
       if (document%groups(i)%name == 'link') then
-        call take_name(document, i, 'number', most + most_links_by_matrix, links, diagnostics)
+        call take_name(document, i, 'number', most + most_links_by_matrix, links, owners(1), diagnostics)
       else if (document%groups(i)%name == 'pair') then
-        call take_name(document, i, 'coordinate', most, coordinates, diagnostics)
+        call take_name(document, i, 'coordinate', most, coordinates, owners(2), diagnostics)
       end if
     end do
     if (size(links) > 0) call move_alloc(links, names%links)
@@ -43,12 +46,13 @@ contains
   end subroutine find_part_names
 
   !> Take the name of one group, for the numbers that it gives.
-  pure subroutine take_name(document, number, key, most, list, diagnostics)
+  pure subroutine take_name(document, number, key, most, list, owners, diagnostics)
     type(document_type), intent(inout) :: document                   !< with the group
     integer, intent(in) :: number                                    !< position of the group
     character(len=*), intent(in) :: key                              !< under which the group gives its numbers, or under its plural
     integer, intent(in) :: most                                      !< largest number that may exist
     character(len=*), allocatable, intent(inout) :: list(:)          !< names by numbers; grows
+    type(name_table_type), intent(inout) :: owners                   !< positions of groups by their names; grows
     type(diagnostics_type), intent(inout), optional :: diagnostics   !< gets the errors
     integer, allocatable :: numbers(:)
     integer :: item, i
@@ -60,10 +64,12 @@ contains
       if (size(values) /= 1) return
       if (values(1)%kind /= value_text) return
       if (present(diagnostics)) then
-        call judge_name(document, number, values(1)%text, values(1)%span, is_right, diagnostics)
+        call judge_name(document, number, values(1)%text, values(1)%span, owners%find(values(1)%text), is_right, &
+                        diagnostics)
         if (.not. is_right) values(1)%kind = value_bad
         if (.not. is_right) return
       end if
+      call owners%add(values(1)%text, number)
       numbers = numbers_under(document%groups(number), key)
       do i = 1, size(numbers)
         if (numbers(i) < 1 .or. numbers(i) > most) cycle
@@ -75,14 +81,14 @@ contains
   end subroutine take_name
 
   !> Report a name that is none, or that another group has.
-  pure subroutine judge_name(document, number, name, span, is_right, diagnostics)
+  pure subroutine judge_name(document, number, name, span, owner, is_right, diagnostics)
     type(document_type), intent(in) :: document            !< with the groups
     integer, intent(in) :: number                          !< position of the group with the name
     character(len=*), intent(in) :: name                   !< the name
     type(span_type), intent(in) :: span                    !< its place
+    integer, intent(in) :: owner                           !< position of a group before that has it; 0: none
     logical, intent(out) :: is_right                       !< nothing is reported
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets the errors
-    integer :: i, item
 
     is_right = is_part_name(name)
     associate (group => document%groups(number)%name)
@@ -92,16 +98,10 @@ contains
                              printable(name, longest_part_name)//'''')
         return
       end if
-      do i = 1, number - 1
-        if (document%groups(i)%name /= group) cycle
-        item = last_item(document%groups(i), 'name')
-        if (item == 0) cycle
-        if (.not. is_text(document%groups(i)%items(item)%values, name)) cycle
-        call diagnostics%add(span, 'a second '//group//' has the name '''//name//''''// &
-                             trim(line_of(document%groups(i), diagnostics)))
-        is_right = .false.
-        return
-      end do
+      if (owner == 0) return
+      call diagnostics%add(span, 'a second '//group//' has the name '''//name//''''// &
+                           trim(line_of(document%groups(owner), diagnostics)))
+      is_right = .false.
     end associate
   end subroutine judge_name
 
@@ -272,8 +272,11 @@ contains
     integer :: i
 
     allocate (found(0))
-    copy = document
-    call find_part_names(copy, names)
+    names = document%names
+    if (.not. has_names(names)) then       ! it is not checked
+      copy = document
+      call find_part_names(copy, names)
+    end if
     do i = 1, size(document%groups)
       if (document%groups(i)%name /= kind) cycle
       if (is_called(document%groups(i), called, names)) found = [found, i]

@@ -1,5 +1,6 @@
 !> Notes of --check on data that are allowed but often mistakes: angles in the other unit, bodies and links without effect.
 module mech9_check_notes
+  use mech9_named_words, only: with_names
   use mech9_kinds, only: wp, pi, radians_per_degree
   use mech9_error, only: error_type
   use mech9_text, only: to_text, some_of
@@ -76,7 +77,7 @@ contains
     real(wp) :: rate
 
     if (.not. mechanism%pairs(k)%pair%angular .or. mechanism%pairs(k)%pair%user_calls() > 0) return
-    begin = 'note: '//what//' of coordinate '//to_text(k)//' has '
+    begin = with_names(mechanism%names, 'note: '//what//' of coordinate '//to_text(k)//' has ')
     if (abs(unit_of(mechanism, k) - 1.0_wp) <= 0.0_wp) then
       if (abs(q) > 2.0_wp*pi) then
         write (unit, '(a)') begin//'the angle '//to_text(q)//' rad, more than a turn; where degrees are meant, give '// &

@@ -1,5 +1,6 @@
 !> Contacts of links in a check: their surfaces, and the gaps at the start.
 module mech9_contact_text
+  use mech9_named_words, only: with_names
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
   use mech9_motion_view, only: link_motion_type
@@ -47,7 +48,7 @@ contains
         end if
         if (contact%has_friction()) words = words//'; coefficients of friction '//to_text(contact%static_friction, 4)// &
                                             ' at rest, '//to_text(contact%sliding_friction, 4)//' in motion'
-        write (unit, '(2x,a)') words
+        write (unit, '(2x,a)') with_names(mechanism%names, words)
       end associate
     end do
   end subroutine print_contacts

@@ -1,5 +1,6 @@
 !> Frictions in a check and in reports.
 module mech9_friction_text
+  use mech9_named_words, only: with_names
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
   use mech9_counted, only: counted
@@ -38,7 +39,7 @@ contains
         end if
         words = words//'; coefficients '//to_text(friction%static, 4)//' at rest, '//to_text(friction%dynamic, 4)//' in motion'
         if (friction%is_smooth) words = words//', smooth'
-        write (unit, '(2x,a)') words
+        write (unit, '(2x,a)') with_names(mechanism%names, words)
       end associate
     end do
   end subroutine print_frictions

@@ -1,5 +1,6 @@
 !> Lines about rods between ball joints that turn about themselves.
 module mech9_held_text
+  use mech9_named_words, only: with_names
   use mech9_text, only: to_text
   use mech9_idle_rods, only: idle_rod_type, find_idle_rods
   use mech9_held_rods, only: held_angle
@@ -36,9 +37,10 @@ contains
       end associate
       if (has_negligible_inertia(model, rods(i)%links)) &
         words = words//', with a negligible moment of inertia about the line between them'
-      write (unit, '(a)') words//'; coordinate '//to_text(k)//' is held at '// &
-        to_text(model%problem%initial%position(k)/unit_of(model%mechanism, k), 6)//' '//trim(unit_name(model%mechanism, k))// &
-        ', or another angle of these joints where this one would stop the motion'
+      words = words//'; coordinate '//to_text(k)//' is held at '// &
+              to_text(model%problem%initial%position(k)/unit_of(model%mechanism, k), 6)//' '// &
+              trim(unit_name(model%mechanism, k))//', or another angle of these joints where this one would stop the motion'
+      write (unit, '(a)') with_names(model%mechanism%names, words)
     end do
   end subroutine print_held
 

@@ -1,5 +1,6 @@
 !> The plan in words, for --plan and --verbose: the computations, and those left out with the reason.
 module mech9_plan_text
+  use mech9_named_words, only: with_names
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
   use mech9_counted, only: counted
@@ -40,9 +41,9 @@ contains
     if (requested%derivatives == 0) write (unit, '(a)') &
       'accelerations left out: none are recorded, and rates only serve to keep to the branch'
     do i = 1, plan%n_coordinates
-      if (mechanism%pairs(i)%pair%user_calls() > 1) write (unit, '(a)') 'pair '//to_text(i)// &
-        ': the user procedure in plain values is called '//to_text(mechanism%pairs(i)%pair%user_calls())// &
-        ' times a position or more, for its derivatives'
+      if (mechanism%pairs(i)%pair%user_calls() > 1) write (unit, '(a)') with_names(mechanism%names, &
+        'pair '//to_text(i)//': the user procedure in plain values is called '// &
+        to_text(mechanism%pairs(i)%pair%user_calls())//' times a position or more, for its derivatives')
     end do
     if (size(mechanism%bodies) > 0) call print_dynamics_plan(unit, mechanism, plan)
   end subroutine print_plan

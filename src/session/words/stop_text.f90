@@ -1,5 +1,6 @@
 !> Stops in a check: their ends, and the gaps that are left to them at the start.
 module mech9_stop_text
+  use mech9_named_words, only: with_names
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
   use mech9_mechanism, only: mechanism_type
@@ -41,7 +42,8 @@ contains
         else
           words = words//'; compliant'
         end if
-        write (unit, '(2x,a)') 'stop '//to_text(i)//': coordinate '//to_text(stop%coordinate)//' is '//words
+        write (unit, '(2x,a)') with_names(mechanism%names, 'stop '//to_text(i)//': coordinate '//to_text(stop%coordinate)// &
+                                                           ' is '//words)
       end associate
     end do
   end subroutine print_stops
