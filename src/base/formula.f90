@@ -4,7 +4,7 @@
 !> less than powers, and powers are joined from the right: -2^2 is -4, and 2^3^2 is 2^9.
 module mech9_formula
   use mech9_kinds, only: wp
-  use mech9_text, only: to_text
+  use mech9_text, only: to_text, lower
   implicit none
   private
   public :: formula_type, formula_problem_type, parse_formula, longest_variable, largest_value, no_operand
@@ -419,12 +419,12 @@ contains
     problem%last = max(first, last)
   end subroutine complain
 
-  !> Number of a function by its name; 0 for others.
+  !> Number of a function by its name, in any case; 0 for others.
   pure integer function number_of_function(name) result(number)
     character(len=*), intent(in) :: name     !< any name
 
     do number = size(function_names), 1, -1
-      if (function_names(number) == name) return
+      if (function_names(number) == lower(name)) return
     end do
   end function number_of_function
 

@@ -42,6 +42,7 @@ contains
     call number(tester, 'min(3, 1, 2) + max(3,1,5)', 6.0_wp)
     call number(tester, '.5d1 + 5.E-1', 5.5_wp)
     call number(tester, 'atan2(1, -1)', 2.356194490192344928847_wp)
+    call number(tester, 'Sqrt(4)*MAX(1, 2)', 4.0_wp)
     call number(tester, 'sqrt (16) + exp(0) + log(1) + abs(-3)', 8.0_wp)
   end subroutine binding
 

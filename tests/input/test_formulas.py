@@ -186,6 +186,7 @@ def test_searches_follow_formulas(checks, mech9k, tmp_path):
     (("'sqrt(a^2 + b^2) - 0.2'", "'sqrt(a^2 +'"), 'a number or a name is missing here', "+'"),
     (("name='diagonal',", "name='diagonal', value=1,"), "'value' does not belong to a parameter with a formula", 'value'),
     (("name='diagonal',", "name='diagonal', low=1, high=2,"), "'low' does not belong to a parameter with a formula", 'low'),
+    (("value=0.3 /", "value=0.3 /\n&parameter name='pi', value=1, sets='pair(3).point(1)' /"), 'pi is a number in formulas', "'pi'"),
     (("'a', value=0.3", "'a'"), "parameter 'a' needs 'sets'", '&parameter'),
     (("value=0.3 /", "value=0.3 /\n&parameter name='idle', value=2 /"), "parameter 'idle' sets no number, and no formula names it", '&parameter'),
     (("sets='point.position(1)'", "sets='pair(2).point(1)'"), 'sets this number already', "'pair(2).point(1)'"),

@@ -7,7 +7,7 @@ module mech9_formula_parameters
   use mech9_formula_value, only: evaluate_formula
   use mech9_source, only: span_type
   use mech9_document, only: document_type, group_type
-  use mech9_lookup, only: find_item, get_text, group_or_empty, has_unsound
+  use mech9_lookup, only: find_item, get_text, span_of, group_or_empty, has_unsound
   use mech9_diagnostics, only: diagnostics_type
   use mech9_parameter, only: formula_result_type
   implicit none
@@ -50,6 +50,9 @@ contains
     found = diagnostics%count
     j = 0
     do i = 1, size(groups)
+      if (any(is_formula) .and. get_text(document%groups(groups(i)), 'name') == 'pi') &
+        call diagnostics%add(span_of(document%groups(groups(i)), 'name', 1), 'pi is a number in formulas; give the parameter '// &
+                             'another name')
       if (.not. is_formula(i)) cycle
       j = j + 1
       call read_one(document, document%groups(groups(i)), groups, is_formula, formulas%bound(j), diagnostics)
