@@ -419,6 +419,19 @@ def test_refused_variables(case):
     case.refused(FOUR_BAR + motor.format('P.x'), 3, 'the law of a motor is over t, a coordinate')
 
 
+@pytest.mark.parametrize('tolerance', (1e-8, 1e-11))
+def test_kinks_over_a_coordinate_cost_no_accuracy(case, tolerance):
+    """A mass flies freely, swings half a period against a spring that begins at 0, and flies back: steps meet both kinks by their
+    control of errors, within some hundred tolerances."""
+    text = (SLIDE.format(velocity=-2).replace('mass=2', 'mass=1').replace('0.4', '0.5')
+            + "&load kind='coordinate', coordinate=1, force=-1, law='segments', times=-5,-1,0,5, values=-51,-50,0,0, "
+            "laws='constant-velocity','constant-velocity','dwell', over='q1' /\n&time end=1.5, intervals=3 /\n"
+            f'&solver relative_tolerance={tolerance!r}, absolute_tolerance={tolerance!r} /\n')
+    found = case.table(text)
+    back = 0.25 + np.pi / np.sqrt(50)
+    case.checks.near([found['q1'][-1], found['dq1'][-1]], [2 * (1.5 - back), 2.0], 200 * tolerance, 'free flight behind the spring', scale=1)
+
+
 def test_names_of_pairs_stand_for_coordinates(case):
     load = "&load kind='torque', link=2, torque=0,0,1, law='harmonic', amplitude=2, angular_frequency=5, over='{}' /\n&time end=0.2, intervals=2 /\n"
     named = FOUR_BAR.replace('&pair coordinate=4,', "&pair coordinate=4, name='rocker',")
