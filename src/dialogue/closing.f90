@@ -172,8 +172,8 @@ contains
     type(draft_type), intent(in) :: draft  !< groups and names with their values as text
     character(len=*), intent(in) :: path   !< name of the data file
     character(len=:), allocatable :: table
-    character(len=9), parameter :: groups(7) = [character(len=9) :: 'drive', 'load', 'motor', 'pair', 'coupling', 'study', &
-                                                'objective']
+    character(len=9), parameter :: groups(8) = [character(len=9) :: 'drive', 'load', 'motor', 'contact', 'pair', 'coupling', &
+                                                'study', 'objective']
     integer :: g, i
 
     is_read = .true.

@@ -75,12 +75,14 @@ contains
     end if
   end subroutine make_frame
 
-  !> A pair as a message names it: pair 5, or the spherical joint of coordinates 4, 5, 6.
+  !> A pair, or another group, as a message names it: pair 5, or the spherical joint of coordinates 4, 5, 6.
   pure function pair_words(group) result(words)
     type(group_type), intent(in) :: group  !< the group of the data file
     character(len=120) :: words
 
-    if (has_name(group, 'coordinates')) then
+    if (group%name /= 'pair') then
+      words = 'the &'//trim(group%name)
+    else if (has_name(group, 'coordinates')) then
       words = 'the '//get_text(group, 'kind')//' joint of coordinates '//to_text(get_integers(group, 'coordinates'))
     else
       words = 'pair '//to_text(get_integer(group, 'coordinate'))

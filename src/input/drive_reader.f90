@@ -402,8 +402,8 @@ contains
     n = 0
     do i = 1, size(paths)
       associate (group => document%groups(i))
-        if (all(group%name /= [character(len=9) :: 'drive', 'load', 'motor', 'pair', 'coupling', 'study', 'objective']) .or. &
-            .not. allocated(group%items)) cycle
+        if (all(group%name /= [character(len=9) :: 'drive', 'load', 'motor', 'contact', 'pair', 'coupling', 'study', &
+                               'objective']) .or. .not. allocated(group%items)) cycle
         call take_file(document%source%name, group%items, paths, n)
       end associate
     end do

@@ -205,6 +205,7 @@ contains
     real(wp), allocatable :: points(:, :)
     real(wp) :: axis(3), zero(3), scale
     integer :: found
+    logical, allocatable :: corners(:)
     logical :: ok
 
     found = diagnostics%count
@@ -215,7 +216,7 @@ contains
     zero = real_or(group, 'moving_zero', default_zero(axis))
     call make_frame(group, 'moving_', real_or(group, 'moving_point', [0.0_wp, 0.0_wp, 0.0_wp]), axis, zero, moving, diagnostics)
     call read_curve_file(beside(data_file, get_text(group, 'file')), span_of(group, 'file', 1), get_integers(group, 'columns'), &
-                         points, spans, ok, diagnostics)
+                         fewest_points, points, spans, corners, ok, diagnostics)
     scale = unit*get_real(group, 'scale')
     if (ok) then
       points = scale*points

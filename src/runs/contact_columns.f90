@@ -22,8 +22,8 @@ contains
     integer :: i
 
     if (.not. mechanism%has_contacts()) return
-    columns%contacts = 3*size(mechanism%contacts)
-    do i = 1, size(mechanism%contacts)
+    columns%contacts = 3*maxval(mechanism%contacts%number)
+    do i = 1, columns%contacts/3
       call columns%append_in('K'//to_text(i)//'.gap', 'm', 'gap of contact '//to_text(i))
       call columns%append_in('K'//to_text(i)//'.fn', 'N', 'normal force of contact '//to_text(i))
       call columns%append_in('K'//to_text(i)//'.ft', 'N', 'friction of contact '//to_text(i))
@@ -39,21 +39,27 @@ contains
     real(wp), intent(inout) :: row(:)                   !< numbers of one row, one for each column
     type(contact_place_type) :: place
     type(link_motion_type) :: ball, surface
-    integer :: at, i
+    real(wp) :: normal_force
+    integer :: first, at, i
 
-    at = columns%before_stops() + columns%stops + columns%frictions
-    do i = 1, columns%contacts/3
+    if (columns%contacts == 0) return
+    first = columns%before_stops() + columns%stops + columns%frictions
+    row(first + 1:first + columns%contacts) = 0.0_wp
+    row(first + 1:first + columns%contacts:3) = huge(1.0_wp)
+    do i = 1, size(mechanism%contacts)
+      at = first + 3*(mechanism%contacts(i)%number - 1)
       call place_of_contact(mechanism%contacts(i), plan, state, place, ball, surface)
-      row(at + 1) = place%gap
-      row(at + 2) = mechanism%contacts(i)%normal_force(place)
-      row(at + 3) = 0.0_wp
+      ! sides of one profile have the gap to the nearest, and their forces together
+      row(at + 1) = min(row(at + 1), place%gap)
       if (allocated(state%contact_force)) then
         associate (force => state%contact_force(:, i))
-          row(at + 2) = dot_product(force, place%normal)
-          row(at + 3) = norm2(force - row(at + 2)*place%normal)
+          normal_force = dot_product(force, place%normal)
+          row(at + 3) = row(at + 3) + norm2(force - normal_force*place%normal)
         end associate
+      else
+        normal_force = mechanism%contacts(i)%normal_force(place)
       end if
-      at = at + 3
+      row(at + 2) = row(at + 2) + normal_force
     end do
   end subroutine fill_contacts
 end module mech9_contact_columns

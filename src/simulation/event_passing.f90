@@ -13,6 +13,7 @@ module mech9_event_passing
   use mech9_event_search, only: locate, value_at, of_motor, of_contact, of_rate
   use mech9_friction_passing, only: find_friction, find_rubbing
   use mech9_stop_contacts, only: gap_motion, gap_acceleration
+  use mech9_contact_events, only: refuse_jump
   use mech9_friction_heat, only: take_heat
   implicit none
   private
@@ -33,7 +34,7 @@ contains
     type(integrated_motion_type), intent(inout) :: motion   !< the motion at the end of a step
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     real(wp) :: from, times(4), y(size(motion%y))
-    integer :: motor, contact, friction, rubbing, found(4), soonest, met, slipping
+    integer :: motor, contact, friction, rubbing, found(4), soonest, met, slipping, i
     logical :: motors, contacts, frictions, rubs
 
     motors = motion%limits%is_needed(motion%system)
@@ -87,6 +88,9 @@ contains
       if (allocated(err)) return
       if (motors .or. contacts .or. rubs .or. allocated(motion%system%friction)) call motion%system%move_to(motion%t, motion%y, err)
       if (.not. allocated(err)) call motion%note_start(err)
+      do i = 1, size(motion%contacts%ends)
+        if (.not. allocated(err)) call refuse_jump(motion%system, motion%contacts%ends(i), err)
+      end do
     end if
   end subroutine stop_at_events
 

@@ -3,7 +3,8 @@ module mech9_contact_words
   use mech9_text, only: to_text
   use mech9_failure, only: failure_type
   use mech9_integration_failures, only: failure_contact_paradox
-  use mech9_event_failures, only: failure_contact_start, failure_contact_violated, failure_undecided_contact
+  use mech9_event_failures, only: failure_contact_start, failure_contact_violated, failure_undecided_contact, &
+    failure_contact_behind
   use mech9_simulation_failures, only: failure_contact_passed, failure_contact_sensitivity
   implicit none
   private
@@ -28,6 +29,10 @@ contains
       text = 'the motion ends at t = '//to_text(failure%t, 10)//' s: the forces of rigid contacts with friction have '// &
              trim(merge('no solution      ', 'several solutions', failure%limit == 1))//' there, among them contact '// &
              to_text(failure%number)//' (the paradox of Painleve). Lower friction=, or make the contact compliant by stiffness='
+    case (failure_contact_behind)
+      text = 'the ball of contact '//to_text(failure%number)//' comes behind its path at t = '//to_text(failure%t, 10)// &
+             ' s, round one of its ends: it is '//to_text(-failure%values(1, 1), 4)//' m within the surface. Make the path '// &
+             'longer, or close it'
     case (failure_contact_paradox)
       text = 'the friction of contact '//to_text(failure%number)//' has no solution from t = '//to_text(failure%t, 10)// &
              ' s on (the paradox of Painleve): its coefficient is '//to_text(failure%values(1, 1), 8)//', and from '// &

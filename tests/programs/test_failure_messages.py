@@ -486,6 +486,11 @@ def free_cases():
           'sensitivities and gradients']),
         ('contact_start', SUNK_POINT, (), DATA,
          ['the links of contact 1 are 0.25 m within each other at the start. Start elsewhere, or move the surface']),
+        ('contact_behind', SLIDING_POINT.replace('velocity=0', 'velocity=1').replace(
+            "&contact point='P' /", "&contact point='P', kind='path', file='path.dat', side='left', axis=0,1,0, zero=0,0,1 /"),
+         {'path.dat': '1.5 0.1\n3 0.1\n'}, SINGULAR,
+         ['the ball of contact 1 comes behind its path at t = ', ' s, round one of its ends: it is 0.1 m within the surface. Make the path '
+          'longer, or close it']),
         ('contact_violated', PRESSED_POINT, (), SINGULAR,
          ['the drives press the links of contact 1 into each other from t = 0.5 s on; the gap has the rate -1 m/s. Change the drives, or '
           'make the contact compliant by stiffness=']),

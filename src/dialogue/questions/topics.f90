@@ -39,7 +39,7 @@ module mech9_topics
     topic_type('Friction', 'friction', 'Dry friction in pairs, by the forces that these pass on. '// &
                'A friction begun by mistake is left out by remove.'), &
     topic_type('Points', 'point', 'Positions, velocities and accelerations of these points are recorded.'), &
-    topic_type('Contacts', 'contact', 'A ball about a traced point may touch a plane or a sphere of another link. '// &
+    topic_type('Contacts', 'contact', 'A ball about a traced point may touch a plane, a sphere or a path of another link. '// &
                'A contact begun by mistake is left out by remove.'), &
     topic_type('Cams', 'cam', 'A cam whose profile follows from the motion of its follower, for the option --cam. '// &
                'A cam begun by mistake is left out by remove.'), &

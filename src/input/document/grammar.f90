@@ -458,16 +458,33 @@ module mech9_grammar
                   'name of the &point that touches, or about which the ball is', '''P'''), &
     item_row_type('contact', 'link', 'integer', 1, 1, '', optional, '1', '>=1', '', '', &
                   'number of the link with the surface', '1'), &
-    item_row_type('contact', 'kind', 'text', 1, 1, '', optional, '''plane''', '', 'plane sphere', '', &
-                  'of the surface', '''plane'''), &
+    item_row_type('contact', 'kind', 'text', 1, 1, '', optional, '''plane''', '', 'plane sphere path', '', &
+                  'of the surface; path: a curve in a plane, and along the axis of this plane', '''plane'''), &
     item_row_type('contact', 'origin', 'real', 3, 3, 'm', optional, '0, 0, 0', '', '', '', &
-                  'a point of the plane, or the centre of the sphere, in the system of its link', '0, 0, 0'), &
+                  'a point of the plane, centre of the sphere, or origin of the path, in the system of its link', '0, 0, 0'), &
     item_row_type('contact', 'normal', 'real', 3, 3, '', optional, '0, 0, 1', '', '', '', &
                   'of the plane, towards its free side, in the axes of its link', '0, 0, 1'), &
     item_row_type('contact', 'radius', 'real', 1, 1, 'm', optional, '0', '>=0', '', '', &
                   'of the ball about the point; 0 for the point itself', '0.05'), &
     item_row_type('contact', 'other_radius', 'real', 1, 1, 'm', optional, '0', '>=0', '', '', &
                   'of the sphere that is the surface', '0.1', seldom=.true.), &
+    item_row_type('contact', 'file', 'text', 1, 1, 'm', optional, '(none)', '', '', '', &
+                  'of a path: a text file with x and y in each line, beside the data file; an empty line makes a corner', &
+                  '''cam.dat''', seldom=.true.), &
+    item_row_type('contact', 'columns', 'integer', 2, 2, '', optional, '(all)', '>=1', '', '', &
+                  'of a path: the columns of x and y in a file that has others too', '3, 4', seldom=.true.), &
+    item_row_type('contact', 'scale', 'real', 1, 1, '', optional, '1', '>0', '', '', &
+                  'of a path: the coordinates in the file are multiplied by this number', '0.001', seldom=.true.), &
+    item_row_type('contact', 'axis', 'real', 3, 3, '', optional, '0, 0, 1', '', '', '', &
+                  'of a path: z axis of the coordinates in the file, in the axes of its link', '0, 0, 1', seldom=.true.), &
+    item_row_type('contact', 'zero', 'real', 3, 3, '', optional, '(x, y or z axis)', '', '', '', &
+                  'of a path: x axis of the coordinates in the file, in the axes of its link', '1, 0, 0', seldom=.true.), &
+    item_row_type('contact', 'closed', 'logical', 1, 1, '', optional, '(where ends meet)', '', '', '', &
+                  'of a path: it has no ends; by default where the last point of its file is the first one again', '.true.', &
+                  seldom=.true.), &
+    item_row_type('contact', 'side', 'text', 1, 1, '', optional, '(outside)', '', 'left right outside inside', '', &
+                  'of a path: where the ball is, seen along the curve with the axis up, or of a closed curve', '''left''', &
+                  seldom=.true.), &
     item_row_type('contact', 'restitution', 'real', 1, 1, '', optional, '0', '>=0', '', '', &
                   'of a rigid contact: rate of the gap after an impact over the rate before it, from 0 to 1', '0.6'), &
     item_row_type('contact', 'friction', 'real', 1, 1, '', optional, '0', '>=0', '', '', &

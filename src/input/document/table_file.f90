@@ -98,12 +98,14 @@ contains
 
   !> Read the points of a curve: x and y in each line, or x, y and z. Errors are reported with their places in that file; `ok` is
   !> false where there are any.
-  subroutine read_curve_file(path, asked_at, chosen, points, spans, ok, diagnostics)
+  subroutine read_curve_file(path, asked_at, chosen, fewest, points, spans, corners, ok, diagnostics)
     character(len=*), intent(in) :: path                  !< path of the file
     type(span_type), intent(in) :: asked_at               !< place of its name in the data file
     integer, intent(in) :: chosen(:)                      !< columns of x, y and perhaps z; none: the file has no others
+    integer, intent(in) :: fewest                         !< number of points that are needed
     real(wp), allocatable, intent(out) :: points(:, :)    !< (3,n) [m]; z is 0 in a plane
     type(span_type), allocatable, intent(out) :: spans(:) !< (n) places of the points in the file
+    logical, allocatable, intent(out) :: corners(:)       !< (n) an empty line parts the point from the next one
     logical, intent(out) :: ok                            !< whether no error was reported
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(point_file_type) :: file
@@ -111,10 +113,10 @@ contains
     type(span_type) :: whole
     type(error_type), allocatable :: err
     integer :: line, n, found, count, columns
-    logical :: readable
+    logical :: readable, parted
 
     ok = .false.
-    allocate (points(3, 0), spans(0))
+    allocate (points(3, 0), spans(0), corners(0))
     call read_source(path, file%source, err)
     if (allocated(err)) then
       call diagnostics%add(asked_at, 'the curve '''//printable(path)//''': '//err%message, err%code)
@@ -122,16 +124,21 @@ contains
     end if
     call diagnostics%add_source(file%source, file%number)
     found = diagnostics%count
-    deallocate (points, spans)
+    deallocate (points, spans, corners)
     allocate (points(3, size(file%source%line_start)), source=0.0_wp)
-    allocate (spans(size(file%source%line_start)))
+    allocate (spans(size(file%source%line_start)), corners(size(file%source%line_start)))
+    corners = .false.
+    parted = .false.
     n = 0
     columns = size(chosen)
     ! no line has more words than the file has letters
     allocate (fields(max(3, min(maxval([0, chosen]), len(file%source%text)))))
     do line = 1, size(file%source%line_start)
       call find_words(file, line, fields, count, whole)
-      if (count == 0) cycle
+      if (count == 0) then
+        parted = parted .or. is_blank(file%source, whole)
+        cycle
+      end if
       if (size(chosen) > 0) then
         call choose_fields(chosen, whole, count, fields, readable, diagnostics)
         if (.not. readable) cycle
@@ -144,30 +151,44 @@ contains
       end if
       call read_words(file%source, fields(:count), points(:count, n + 1), readable, diagnostics)
       if (.not. readable) cycle
+      if (parted .and. n > 0) corners(n) = .true.
+      parted = .false.
       n = n + 1
       spans(n) = whole
     end do
     points = points(:, :n)
     spans = spans(:n)
-    if (diagnostics%count == found .and. n < fewest_points) call report_few_points(file%number, n, asked_at, diagnostics)
+    corners = corners(:n)
+    if (diagnostics%count == found .and. n < fewest) call report_few_points(file%number, n, fewest, asked_at, diagnostics)
     ok = diagnostics%count == found
   end subroutine read_curve_file
 
-  !> Report a file with too few points for a smooth curve, and which pair follows the curve.
-  pure subroutine report_few_points(number, n, asked_at, diagnostics)
+  !> Whether a line is empty, without a comment.
+  pure logical function is_blank(source, line)
+    type(source_type), intent(in) :: source   !< the text of the file
+    type(span_type), intent(in) :: line       !< place of the line
+
+    is_blank = .true.
+    if (line%first > len(source%text)) return
+    is_blank = verify(source%text(line%first:min(line%last, len(source%text))), gaps//achar(10)) == 0
+  end function is_blank
+
+  !> Report a file with too few points for a curve, and what needs the curve.
+  pure subroutine report_few_points(number, n, fewest, asked_at, diagnostics)
     integer, intent(in) :: number                         !< of the file among the sources
     integer, intent(in) :: n                              !< number of its points
+    integer, intent(in) :: fewest                         !< number of points that are needed
     type(span_type), intent(in) :: asked_at               !< place of the file's name in the data file
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
-    character(len=:), allocatable :: pair
+    character(len=:), allocatable :: group
     type(place_type) :: place
 
     place = diagnostics%place(asked_at)
-    pair = 'a pair'
+    group = 'a group'
     if (place%line > 0 .and. place%source == 1) &
-      pair = 'the pair in '//trim(place_words(place))//' of '//printable(diagnostics%sources(1)%name)
-    call diagnostics%add(span_type(number, 0, 0), 'a smooth curve needs at least '//to_text(fewest_points)// &
-                         ' points, and the file has '//to_text(n)//'; '//pair//' follows it')
+      group = 'the group in '//trim(place_words(place))//' of '//printable(diagnostics%sources(1)%name)
+    call diagnostics%add(span_type(number, 0, 0), 'a curve needs at least '//to_text(fewest)// &
+                         ' points, and the file has '//to_text(n)//'; '//group//' needs it')
   end subroutine report_few_points
 
   !> Keep the words of the chosen columns of a line. A line without some of them is reported.

@@ -1,27 +1,37 @@
-!> Contacts of a ball, or of a point, with a plane or a ball of another link: rigid ones with impacts, or compliant ones, with dry friction.
+!> Contacts of a ball, or of a point, with a plane, a ball or a profile of another link: rigid ones with impacts, or compliant ones, with dry
+!> friction.
 !>
 !> A ball of radius r about the point P meets a plane through O with the normal n at the gap g = n . (P - O) - r, and a ball of radius R
-!> about O at g = |P - O| - r - R. The bodies touch at C = P - r n. The penetration d = -g of a compliant contact gives the force
+!> about O at g = |P - O| - r - R. A profile is a curve in a plane, along whose axis the surface goes on; its gap counts in the plane. The bodies touch at C = P - r n. The penetration d = -g of a compliant contact gives the force
 !> d^exponent (stiffness + damping dd/dt), as long as it pushes, as at compliant stops.
 module mech9_contact
   use mech9_kinds, only: wp
   use mech9_error, only: place_type
-  use mech9_rotation, only: cross
+  use mech9_rotation, only: cross, turn, turn_back
+  use mech9_profile, only: profile_type, foot_type
   use mech9_motion_view, only: link_motion_type
   implicit none
   private
-  public :: contact_type, contact_place_type
+  public :: contact_type, contact_place_type, plane_surface, ball_surface, profile_surface, surface_words
+
+  !> The kinds of surfaces, and their names.
+  integer, parameter :: plane_surface = 1, ball_surface = 2, profile_surface = 3
+  character(len=6), parameter :: surface_words(3) = [character(len=6) :: 'plane', 'sphere', 'path']
 
   !> A contact between two links.
   type :: contact_type
     type(place_type) :: place                    !< place of its group in the data file
+    integer :: number = 0                        !< of its group; sides of one profile that a corner parts have the same number
     integer :: links(2) = 0                      !< numbers of the link of the ball, and of that of the surface
     real(wp) :: center(3) = 0.0_wp               !< of the ball, in the system of its link [m]
     real(wp) :: radius = 0.0_wp                  !< of the ball; 0: a point [m]
-    logical :: is_plane = .true.                 !< the surface is a plane, and a ball otherwise
-    real(wp) :: origin(3) = 0.0_wp               !< a point of the plane, or the centre of the ball, in the system of its link [m]
+    integer :: surface = plane_surface           !< kind of the surface
+    real(wp) :: origin(3) = 0.0_wp               !< a point of the plane, the centre of the ball, or the origin of the profile, in its link [m]
     real(wp) :: normal(3) = [0.0_wp, 0.0_wp, 1.0_wp]   !< of the plane, towards the free side, in the axes of its link
     real(wp) :: other_radius = 0.0_wp            !< of the ball that is the surface [m]
+    real(wp) :: axes(3, 3) = 0.0_wp              !< x and y of the profile's plane, and the axis across it, in its link
+    type(profile_type), allocatable :: profile   !< the curve, or one of its sides between corners that stand in
+    type(profile_type), allocatable :: whole     !< the whole curve, where the profile is one side of it
     logical :: is_rigid = .true.                 !< it cannot be pressed in
     real(wp) :: restitution = 0.0_wp             !< of a rigid one: rate after an impact over that before it, 0 to 1
     real(wp) :: sliding_friction = 0.0_wp        !< coefficient of friction in motion
@@ -35,6 +45,7 @@ module mech9_contact
     procedure :: acceleration
     procedure :: normal_force
     procedure :: energy
+    procedure :: outline
   end type contact_type
 
   !> A contact in one state of motion, in fixed axes.
@@ -69,24 +80,59 @@ contains
 
     d = ball%point_position(self%center) - surface%point_position(self%origin)
     v = ball%point_velocity(self%center)
-    if (self%is_plane) then
+    select case (self%surface)
+    case (plane_surface)
       place%normal = surface%fixed_components(self%normal)
       place%gap = dot_product(place%normal, d) - self%radius
       place%normal_rate = cross(surface%omega, place%normal)
-    else
+    case (profile_surface)
+      call find_foot(self, d, v - surface%point_velocity(self%origin) - cross(surface%omega, d), surface, place)
+    case default
       length = norm2(d)
       if (length > 0.0_wp) place%normal = d/length
       place%gap = length - self%radius - self%other_radius
       v_origin = surface%point_velocity(self%origin)
       if (length > 0.0_wp) &
         place%normal_rate = (v - v_origin - dot_product(place%normal, v - v_origin)*place%normal)/length
-    end if
+    end select
     place%at = ball%point_position(self%center) - self%radius*place%normal
     spin = self%radius*cross(ball%omega, place%normal)
     carried = surface%v + cross(surface%omega, place%at - surface%p)
     place%slip = v - spin - carried
     place%speed = norm2(v) + norm2(spin) + norm2(carried)
   end function find_place
+
+  !> Find gap and normal of a profile.
+  pure subroutine find_foot(self, d, v, surface, place)
+    class(contact_type), intent(in) :: self               !< the contact
+    real(wp), intent(in) :: d(3)                          !< from the profile's origin to the centre of the ball, fixed axes [m]
+    real(wp), intent(in) :: v(3)                          !< velocity of this centre as seen from the surface, fixed axes [m/s]
+    type(link_motion_type), intent(in) :: surface         !< motion of the surface's link
+    type(contact_place_type), intent(inout) :: place      !< gets gap, normal and rate of the normal
+    type(foot_type) :: foot
+    real(wp) :: point(3), tangent(3)
+
+    point = turn_back(self%axes, turn_back(surface%r, d))
+    foot = self%profile%foot(point(:2))
+    place%gap = foot%distance - self%radius
+    if (is_hidden(self, foot, point(:2))) place%gap = -foot%distance
+    place%normal = surface%fixed_components(turn(self%axes, [foot%normal, 0.0_wp]))
+    tangent = surface%fixed_components(turn(self%axes, [foot%tangent, 0.0_wp]))
+    place%normal_rate = cross(surface%omega, place%normal) + foot%turning*dot_product(v, tangent)*tangent
+  end subroutine find_foot
+
+  !> Whether a point outside the whole curve sees a side from behind, through the body, where it cannot touch.
+  pure logical function is_hidden(self, foot, point)
+    type(contact_type), intent(in) :: self   !< the contact
+    type(foot_type), intent(in) :: foot      !< foot of the point on its profile
+    real(wp), intent(in) :: point(2)         !< in the plane of the profile [m]
+    type(foot_type) :: on_whole
+
+    is_hidden = foot%distance < 0.0_wp .and. allocated(self%whole)
+    if (.not. is_hidden) return
+    on_whole = self%whole%foot(point)
+    is_hidden = on_whole%distance > 0.0_wp
+  end function is_hidden
 
   !> The derivative in time of the velocity of the ball against the surface where they touch, fixed axes [m/s^2]; its part along the normal
   !> is the second derivative of the gap.
@@ -126,6 +172,20 @@ contains
     energy = 0.0_wp
     if (.not. self%is_rigid) energy = self%stiffness*max(0.0_wp, -place%gap)**(self%exponent + 1.0_wp)/(self%exponent + 1.0_wp)
   end function energy
+
+  !> Points along the profile, in the system of its link.
+  pure function outline(self) result(points)
+    class(contact_type), intent(in) :: self   !< a contact with a profile
+    real(wp), allocatable :: points(:, :)     !< (3,n) [m]
+    real(wp), allocatable :: flat(:, :)
+    integer :: i
+
+    flat = self%profile%trace()
+    allocate (points(3, size(flat, 2)))
+    do i = 1, size(flat, 2)
+      points(:, i) = self%origin + turn(self%axes, [flat(:, i), 0.0_wp])
+    end do
+  end function outline
 
   !> The rate of the gap [m/s].
   pure real(wp) function gap_rate(self)

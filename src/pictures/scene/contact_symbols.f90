@@ -7,7 +7,8 @@ module mech9_contact_symbols
   use mech9_text, only: to_text
   use mech9_rotation, only: cross, unit, turn_back
   use mech9_mechanism, only: mechanism_type
-  use mech9_contact, only: contact_type
+  use mech9_scene_paths, only: add_guide
+  use mech9_contact, only: contact_type, plane_surface, ball_surface, profile_surface
   use mech9_film, only: film_type
   use mech9_projection, only: projection_type
   use mech9_scene, only: scene_type, open_path, closed_path, segments, mark, in_ground, in_hatch, in_bracket, in_surface, &
@@ -15,7 +16,7 @@ module mech9_contact_symbols
   use mech9_symbol_shapes, only: across
   implicit none
   private
-  public :: add_planes, add_balls
+  public :: add_surfaces, add_balls
 
   !> Room of a plane beyond the places of the ball, distance and length of its hatches [px]; most hatches.
   real(wp), parameter :: plane_more = 24.0_wp, hatch_step = 8.0_wp, hatch = 7.0_wp
@@ -27,8 +28,8 @@ module mech9_contact_symbols
 
 contains
 
-  !> Add the planes of all contacts, which all other things cover.
-  subroutine add_planes(mechanism, film, projection, planar, scene)
+  !> Add the planes and paths of all contacts, which all other things cover.
+  subroutine add_surfaces(mechanism, film, projection, planar, scene)
     type(mechanism_type), intent(in) :: mechanism    !< the mechanism
     type(film_type), intent(in) :: film              !< poses at the outputs of the run
     type(projection_type), intent(in) :: projection  !< from space to the page
@@ -37,10 +38,12 @@ contains
     integer :: i
 
     do i = 1, size(mechanism%contacts)
-      if (mechanism%contacts(i)%is_plane) &
-        call add_plane(mechanism%contacts(i), name_of(i), film, projection, planar, scene)
+      if (mechanism%contacts(i)%surface == plane_surface) &
+        call add_plane(mechanism%contacts(i), name_of(mechanism%contacts(i)%number), film, projection, planar, scene)
+      if (mechanism%contacts(i)%surface == profile_surface) &
+        call add_guide(mechanism%contacts(i)%outline(), mechanism%contacts(i)%links(2), 1.0_wp/projection%scale, scene)
     end do
-  end subroutine add_planes
+  end subroutine add_surfaces
 
   !> Add the balls of all contacts. Each is drawn once, however many contacts share it.
   subroutine add_balls(mechanism, film, projection, planar, scene)
@@ -53,16 +56,16 @@ contains
 
     do i = 1, size(mechanism%contacts)
       associate (contact => mechanism%contacts(i))
-        if (contact%is_plane .or. .not. contact%other_radius > 0.0_wp) cycle
+        if (contact%surface /= ball_surface .or. .not. contact%other_radius > 0.0_wp) cycle
         if (.not. (any([(same_surface(contact, mechanism%contacts(j)), j=1, i - 1)]))) then
-          call add_sphere(contact%links(2), contact%origin, contact%other_radius, name_of(i), projection, scene)
+          call add_sphere(contact%links(2), contact%origin, contact%other_radius, name_of(contact%number), projection, scene)
         end if
       end associate
     end do
     do i = 1, size(mechanism%contacts)
       associate (contact => mechanism%contacts(i))
         if (.not. contact%radius > 0.0_wp .or. any([(same_ball(contact, mechanism%contacts(j)), j=1, i - 1)])) cycle
-        call add_sphere(contact%links(1), contact%center, contact%radius, name_of(i), projection, scene)
+        call add_sphere(contact%links(1), contact%center, contact%radius, name_of(contact%number), projection, scene)
         call add_lines(contact, film, projection, planar, scene)
       end associate
     end do
@@ -81,7 +84,7 @@ contains
     type(contact_type), intent(in) :: one     !< a contact whose surface is a ball
     type(contact_type), intent(in) :: other   !< any contact
 
-    same_surface = .not. other%is_plane .and. one%links(2) == other%links(2) .and. &
+    same_surface = other%surface == ball_surface .and. one%links(2) == other%links(2) .and. &
                    all(abs(one%origin - other%origin) <= 0.0_wp) .and. abs(one%other_radius - other%other_radius) <= 0.0_wp
   end function same_surface
 

@@ -3,6 +3,7 @@ module mech9_projection
   use mech9_kinds, only: wp
   use mech9_mechanism, only: mechanism_type
   use mech9_spring_load, only: spring_load_type
+  use mech9_contact, only: ball_surface, profile_surface
   use mech9_film, only: film_type
   use mech9_pair_axes, only: free
   use mech9_skeleton, only: skeleton_type, place_type
@@ -144,14 +145,21 @@ contains
     type(view_type), intent(in) :: view            !< direction from which the mechanism is seen
     integer, intent(in) :: frame                   !< number of the frame in the film
     type(box_type), intent(inout) :: box           !< bounds of what is seen, in the directions of the view [m]
-    integer :: i, sense
+    real(wp), allocatable :: points(:, :)
+    integer :: i, k, sense
 
     do i = 1, size(mechanism%contacts)
       associate (contact => mechanism%contacts(i))
+        if (contact%surface == profile_surface) then
+          points = contact%outline()
+          do k = 1, size(points, 2)
+            call enclose(view, film%position(frame, contact%links(2), points(:, k)), box)
+          end do
+        end if
         do sense = -1, 1, 2
           call enclose(view, film%position(frame, contact%links(1), contact%center) + &
                        sense*contact%radius*(view%right + view%up), box)
-          if (.not. contact%is_plane) call enclose(view, film%position(frame, contact%links(2), contact%origin) + &
+          if (contact%surface == ball_surface) call enclose(view, film%position(frame, contact%links(2), contact%origin) + &
                                                    sense*contact%other_radius*(view%right + view%up), box)
         end do
       end associate

@@ -13,7 +13,7 @@ module mech9_scene_making
   use mech9_link_shapes, only: distinct_points, find_shape
   use mech9_pair_symbols, only: symbols_type, prepare_symbols, add_guides, add_stands, add_symbols
   use mech9_spring_symbols, only: add_springs
-  use mech9_contact_symbols, only: add_planes, add_balls
+  use mech9_contact_symbols, only: add_surfaces, add_balls
   use mech9_pose_marks, only: pose_mark_type, add_poses
   use mech9_stop_symbols, only: add_stops, add_stuck_pairs
   use mech9_scene_labels, only: add_labels
@@ -50,7 +50,7 @@ contains
     integer :: nodes(size(mechanism%points)), link
 
     call prepare_symbols(film, skeleton, projection, planar, scene, symbols)
-    if (mechanism%has_contacts()) call add_planes(mechanism, film, projection, planar, scene)
+    if (mechanism%has_contacts()) call add_surfaces(mechanism, film, projection, planar, scene)
     call add_paths(mechanism, film, 1.0_wp/projection%scale, scene)
     call add_curves(film, skeleton, 1.0_wp/projection%scale, scene, cams)
     call add_guides(skeleton, projection, scene, symbols)

@@ -8,7 +8,7 @@ module mech9_scene_paths
   use mech9_scene, only: scene_type, open_path, closed_path, in_trace, in_curve, in_cam
   implicit none
   private
-  public :: add_paths, add_curves
+  public :: add_guide, add_paths, add_curves
 
   !> Bounds for a straight line that replaces part of a curve: its distance from the curve [px], and the number of
   !> points that it skips.

@@ -4,7 +4,7 @@ module mech9_contact_text
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
   use mech9_motion_view, only: link_motion_type
-  use mech9_contact, only: contact_place_type
+  use mech9_contact, only: contact_place_type, surface_words
   use mech9_mechanism, only: mechanism_type
   use mech9_result_units, only: length_text
   use mech9_plan, only: plan_type
@@ -32,14 +32,14 @@ contains
     do i = 1, size(mechanism%contacts)
       associate (contact => mechanism%contacts(i))
         call place_of_contact(contact, plan, start, place, ball, surface)
-        words = 'contact '//to_text(i)//': '
+        words = 'contact '//to_text(contact%number)//': '
         if (contact%radius > 0.0_wp) then
           words = words//'a ball of the radius '//trim(length_text(mechanism, contact%radius, 6))
         else
           words = words//'a point'
         end if
         words = words//' of link '//to_text(contact%links(1))//' is '//trim(length_text(mechanism, abs(place%gap), 6))//' '// &
-                trim(merge('within', 'from  ', place%gap < 0.0_wp))//' a '//trim(merge('plane ', 'sphere', contact%is_plane))// &
+                trim(merge('within', 'from  ', place%gap < 0.0_wp))//' a '//trim(surface_words(contact%surface))// &
                 ' of link '//to_text(contact%links(2))
         if (contact%is_rigid) then
           words = words//'; restitution '//to_text(contact%restitution, 4)

@@ -373,7 +373,7 @@ contains
     i = findloc(contacts%contact > 0, .true., dim=1)
     call raise(err, exit_singular, failure_undecided_contact)
     err%failure%t = system%state%t
-    err%failure%number = contacts(i)%contact
+    err%failure%number = contacts(i)%number()
     err%failure%limit = how
     err%place = system%model%mechanism%contacts(contacts(i)%contact)%place
   end subroutine fail_undecided

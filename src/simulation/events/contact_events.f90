@@ -4,9 +4,10 @@
 !> flights last 2u/a, e 2u/a, e^2 2u/a, ..., together 2u/(a (1 - e)).
 module mech9_contact_events
   use mech9_kinds, only: wp
-  use mech9_event_tolerances, only: touching, drawn_behind_stop, least_rebound, endless_part, pressing
+  use mech9_event_tolerances, only: touching, drawn_behind_stop, jumped_behind, least_rebound, endless_part, pressing
   use mech9_error, only: error_type, raise, exit_data, exit_singular
-  use mech9_event_failures, only: failure_event_sensitivity, failure_stop_start, failure_contact_start
+  use mech9_event_failures, only: failure_event_sensitivity, failure_stop_start, failure_contact_start, &
+    failure_contact_behind
   use mech9_result_units, only: unit_of, unit_name
   use mech9_motion_event, only: motion_event_type, motion_events_type, event_impact, event_close, event_open, event_lift, &
     event_stick, event_slip
@@ -16,7 +17,7 @@ module mech9_contact_events
   use mech9_contact_equations, only: contact_equations_type, contact_outcome_type, find_contact_equations, find_impact, find_pushing
   implicit none
   private
-  public :: begin_contacts, meet_contacts, find_pressed
+  public :: begin_contacts, meet_contacts, find_pressed, refuse_jump
 
 contains
 
@@ -75,6 +76,8 @@ contains
     impulses = 0.0_wp
     changes = 0.0_wp
     if (met > 0) then
+      call refuse_jump(system, contacts%ends(met), err)
+      if (allocated(err)) return
       call pass_compliant_end(system%state%t, contacts%ends(met), events)
       if (.not. (contacts%ends(met)%is_stop() .or. contacts%ends(met)%is_rigid)) &
         system%contact%sticks(contacts%ends(met)%contact) = .false.
@@ -130,6 +133,23 @@ contains
     end do
   end subroutine meet_contacts
 
+  !> Fail where a ball is far behind its surface that is open: it has come round an end of a path.
+  subroutine refuse_jump(system, end, err)
+    class(motion_system_type), intent(in) :: system    !< the system
+    type(stop_contact_type), intent(in) :: end         !< the end that is met or left
+    type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
+    real(wp) :: motion(2)
+
+    if (end%is_stop() .or. end%closed) return
+    motion = gap_motion(system%model%mechanism, system%plan, system%state, end)
+    if (motion(1) >= -jumped_behind*end%unit(system%plan)) return
+    call raise(err, exit_singular, failure_contact_behind)
+    err%failure%number = end%number()
+    err%failure%t = system%state%t
+    err%failure%values = reshape([motion(1)], [1, 1])
+    err%place = system%model%mechanism%contacts(end%contact)%place
+  end subroutine refuse_jump
+
   !> Take from a contact of links that comes to rest the slip that errors of integration have left.
   subroutine bring_to_rest(system, number, err)
     class(motion_system_type), intent(inout) :: system     !< the system; its independent rates change
@@ -159,7 +179,7 @@ contains
 
     associate (k => end%contact, contact => system%contact)
       if (end%closed .and. (sticks .neqv. contact%sticks(k))) &
-        call events%add(motion_event_type(system%state%t, merge(event_stick, event_slip, sticks), 'contact', k))
+        call events%add(motion_event_type(system%state%t, merge(event_stick, event_slip, sticks), 'contact', end%number()))
       contact%sticks(k) = sticks .and. end%closed
       contact%direction(:, k) = direction
     end associate

@@ -4,7 +4,7 @@ module mech9_event_failures
   private
   public :: failure_stop_violated, failure_event_sensitivity, failure_stop_start, failure_singular_contact, &
     failure_paradox, failure_shared_sticking, failure_undecided_friction, failure_contact_start, &
-    failure_contact_violated, failure_undecided_contact, last_event_failure
+    failure_contact_violated, failure_undecided_contact, failure_contact_behind, last_event_failure
 
   !> Drives move or press a coordinate beyond a rigid stop: number (of the stop), coordinates, values (the limit, the rate), name (unit
   !> of the limit), t.
@@ -29,5 +29,7 @@ module mech9_event_failures
   integer, parameter :: failure_contact_violated = 1409
   !> Contacts with friction have no solution, or several: number (of one of them), limit (1: no solution, 2: several), t.
   integer, parameter :: failure_undecided_contact = 1410
-  integer, parameter :: last_event_failure = failure_undecided_contact
+  !> A ball comes behind its path, round one of its ends: number (of the contact), values (the gap), t.
+  integer, parameter :: failure_contact_behind = 1411
+  integer, parameter :: last_event_failure = failure_contact_behind
 end module mech9_event_failures

@@ -5,8 +5,8 @@ module mech9_event_tolerances
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: round_off_of_limit, touching, drawn_behind_stop, round_off_of_impacts, least_rebound, endless_part, most_events, &
-    most_events_at_once, limit_of_sticking, at_rest, still, tied, round_off_of_sticking, beyond_all_bounds, pressing
+  public :: round_off_of_limit, touching, drawn_behind_stop, jumped_behind, round_off_of_impacts, least_rebound, endless_part, &
+    most_events, most_events_at_once, limit_of_sticking, at_rest, still, tied, round_off_of_sticking, beyond_all_bounds, pressing
 
   ! Drives and outputs.
 
@@ -21,6 +21,8 @@ module mech9_event_tolerances
   !> A coordinate may start so far behind its stop, in its unit: positions in a data file have ten digits and more, and chains are closed
   !> to round-off.
   real(wp), parameter :: drawn_behind_stop = 1.0e-10_wp
+  !> A ball that is met so far behind its surface, in the unit of length, did not come through it: times of events err by far less.
+  real(wp), parameter :: jumped_behind = 1.0e-6_wp
   !> Part of the sum of its terms that is round-off in the acceleration or in the force of a contact: inertia times acceleration is
   !> eliminated there.
   real(wp), parameter :: round_off_of_impacts = 1.0e-12_wp

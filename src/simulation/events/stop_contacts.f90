@@ -25,7 +25,8 @@ module mech9_stop_contacts
     logical :: closed = .false.          !< a rigid end touches and pushes; a compliant one is pressed in
     logical :: held = .false.            !< it has a force of its own: the coordinate is driven at the limit, or the gap has no acceleration;
                                          !< a closed rigid one without this is held by others
-    integer :: contact = 0               !< number of the contact of links; 0: the end of a stop
+    integer :: contact = 0               !< place of the contact of links among all; 0: the end of a stop
+    integer :: of_group = 0              !< number of its group &contact
   contains
     procedure :: gap
     procedure :: is_stop
@@ -80,7 +81,7 @@ contains
   pure integer function number(self)
     class(stop_contact_type), intent(in) :: self   !< the end
 
-    number = merge(self%stop, self%contact, self%contact == 0)
+    number = merge(self%stop, self%of_group, self%contact == 0)
   end function number
 
   !> The unit in which its gap counts [rad, m].
@@ -155,7 +156,8 @@ contains
       end do
     end do
     do i = 1, n_links
-      contacts%ends(n + i) = stop_contact_type(contact=i, restitution=mechanism%contacts(i)%restitution, &
+      contacts%ends(n + i) = stop_contact_type(contact=i, of_group=mechanism%contacts(i)%number, &
+                                               restitution=mechanism%contacts(i)%restitution, &
                                                is_rigid=mechanism%contacts(i)%is_rigid)
     end do
   end subroutine find_contacts

@@ -217,7 +217,7 @@ contains
     associate (moving => equations%moving)
       free(:size(moving)) = work%forces(moving) - work%velocity_terms(moving)
       if (size(moving) > 0) call cholesky_solve(size(moving), equations%factors, free(:size(moving)))
-      call find_forces(mechanism%contacts(acting), plan, state, equations, free(:size(moving)), self, acting, err)
+      call find_forces(mechanism%contacts, plan, state, equations, free(:size(moving)), self, acting, err)
       if (allocated(err)) return
       work%accelerations = 0.0_wp
       work%accelerations(moving) = free(:size(moving))
@@ -237,7 +237,7 @@ contains
 
   !> Find the forces of the contacts that act.
   subroutine find_forces(contacts, plan, state, equations, free, self, acting, err)
-    type(contact_type), intent(in) :: contacts(:)         !< those that act
+    type(contact_type), intent(in) :: contacts(:)         !< all contacts
     type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
     type(state_type), intent(in) :: state                 !< the state, with the accelerations that rates alone give
     type(contact_rows_type), intent(in) :: equations      !< their equations
@@ -245,27 +245,27 @@ contains
     type(contact_motion_type), intent(inout) :: self      !< all contacts; get their forces
     integer, intent(in) :: acting(:)                      !< numbers of those that act
     type(error_type), allocatable, intent(out) :: err     !< allocated if friction draws a contact together
-    integer :: of_contact(3*size(contacts)), along(3*size(contacts)), m, i, j, c
-    real(wp) :: lines(3, 3*size(contacts)), directions(2, size(contacts)), needed(3, size(contacts))
+    integer :: of_contact(3*size(acting)), along(3*size(acting)), m, i, j, c
+    real(wp) :: lines(3, 3*size(acting)), directions(2, size(acting)), needed(3, size(acting))
     real(wp), allocatable :: a(:, :), x(:), scale(:), forces(:)
     real(wp) :: given(3), acceleration(3), answer(size(free))
     logical :: depends
 
     m = 0
-    do i = 1, size(contacts)
+    do i = 1, size(acting)
       associate (k => acting(i), force => self%forces(:, acting(i)))
-        given = acceleration_of_contact(contacts(i), plan, state)
+        given = acceleration_of_contact(contacts(acting(i)), plan, state)
         do c = 1, 3
           acceleration(c) = dot_product(equations%axes(:, c, i), given) + dot_product(equations%rows(:, c, i), free)
         end do
         needed(:, i) = -acceleration
-        directions(:, i) = slip_direction(contacts(i), equations%places(i), equations%axes(:, :, i), self%direction(:, k))
-        if (contacts(i)%is_rigid) then
+        directions(:, i) = slip_direction(contacts(acting(i)), equations%places(i), equations%axes(:, :, i), self%direction(:, k))
+        if (contacts(acting(i))%is_rigid) then
           call add(1, [1.0_wp, 0.0_wp, 0.0_wp])
-          if (.not. self%sticks(k)) lines(2:3, m) = -contacts(i)%sliding_friction*directions(:, i)
+          if (.not. self%sticks(k)) lines(2:3, m) = -contacts(acting(i))%sliding_friction*directions(:, i)
         else
-          force(1) = contacts(i)%normal_force(equations%places(i))
-          if (.not. self%sticks(k)) force(2:3) = -contacts(i)%sliding_friction*force(1)*directions(:, i)
+          force(1) = contacts(acting(i))%normal_force(equations%places(i))
+          if (.not. self%sticks(k)) force(2:3) = -contacts(acting(i))%sliding_friction*force(1)*directions(:, i)
         end if
         if (.not. self%sticks(k)) cycle
         call add(2, [0.0_wp, 1.0_wp, 0.0_wp])
@@ -274,10 +274,10 @@ contains
     end do
     if (m == 0) return
     ! accelerations by the forces that are known
-    do i = 1, size(contacts)
+    do i = 1, size(acting)
       if (.not. any(abs(self%forces(:, acting(i))) > 0.0_wp)) cycle
       answer = matmul(equations%answers(:, :, i), self%forces(:, acting(i)))
-      do j = 1, size(contacts)
+      do j = 1, size(acting)
         needed(:, j) = needed(:, j) - matmul(answer, equations%rows(:, :, j))
       end do
     end do
@@ -291,14 +291,14 @@ contains
       if (along(j) > 1 .or. a(j, j) > 0.0_wp) cycle
       if (.not. dot_product(equations%rows(:, 1, of_contact(j)), equations%answers(:, 1, of_contact(j))) > 0.0_wp) cycle
       call raise(err, exit_integrator, failure_contact_paradox)
-      err%failure%number = acting(of_contact(j))
       err%failure%t = state%t
-      associate (k => of_contact(j))
-        err%failure%values = reshape([contacts(k)%sliding_friction, &
+      associate (k => of_contact(j), contact => contacts(acting(of_contact(j))))
+        err%failure%number = contact%number
+        err%failure%values = reshape([contact%sliding_friction, &
                                       dot_product(equations%rows(:, 1, k), equations%answers(:, 1, k)) &
                                       /dot_product(equations%rows(:, 1, k), matmul(equations%answers(:, 2:3, k), &
                                                                                    directions(:, k)))], [1, 2])
-        err%place = contacts(k)%place
+        err%place = contact%place
       end associate
       return
     end do
@@ -308,7 +308,7 @@ contains
       ! contacts that stick share their friction in parts of what each can hold
       do j = 1, m
         scale(j) = maxval(abs(forces))
-        if (along(j) > 1) scale(j) = contacts(of_contact(j))%static_friction*max(normal_of(of_contact(j)), tiny(1.0_wp))
+        if (along(j) > 1) scale(j) = contacts(acting(of_contact(j)))%static_friction*max(normal_of(of_contact(j)), tiny(1.0_wp))
       end do
       call solve_least(a, x, scale, forces, depends)
     end if
