@@ -97,7 +97,8 @@ def in_units(groups, units, folder):
             for name, power in (('stiffness', exponent), ('damping', exponent + 1)):
                 if name in items:
                     items[name] = [float(items[name][0]) * units.L ** power / units.F]
-        convert_items(items, OF_LAWS, units, None)
+        if group in ('drive', 'load', 'motor'):
+            convert_items(items, OF_LAWS, units, None)
         if 'dh' in items:
             items['dh'] = [float(v) / (units.L if i in (0, 2) else units.a) for i, v in enumerate(items['dh'])]
         if group == 'coupling':
@@ -126,9 +127,14 @@ def scaled_file(path, units, target):
 
 
 def si_of(unit):
-    """One unit of the head of a table in SI, as of kN_mm/s^2."""
+    """One unit of the head of a table in SI, as of kN_mm/s^2 or mm/(kN_mm)."""
+    whole = re.fullmatch(r'(.*)/\((.*)\)', unit)
+    if whole:
+        return si_of(whole[1]) / si_of(whole[2])
     size = 1.0
-    for sign, word, power in re.findall(r'(^|[_/])([A-Za-z1]+)(?:\^(\d))?', unit):
+    for sign, word, power in re.findall(r'(^|[_ /])([A-Za-z1]+)(?:\^(\d))?', unit):
+        if word == 'rad' and sign == '/':       # per rad, whatever the unit of angles
+            continue
         size *= WORDS[word] ** (int(power or 1) * (-1 if sign == '/' else 1))
     return size
 
