@@ -35,6 +35,7 @@ module mech9_conversation
     logical :: summed_up = .false.                   !< all answers were shown at the end
     logical :: shown = .false.                       !< the errors of a check were shown, and nothing was changed since
     character(len=:), allocatable :: doubted         !< answer that was refused unless it is given again; empty: none
+    logical :: is_large = .false.                    !< lengths of many metres are meant
     character(len=:), allocatable :: heading         !< heading that was shown last
     logical :: told(size(item_table)) = .false.      !< names that were explained already
   contains

@@ -6,16 +6,18 @@ module mech9_taking
   use mech9_grammar_rows, only: refers_to, refers_to_link
   use mech9_diagnostics, only: printable
   use mech9_answer, only: read_answer, yes_or_no
-  use mech9_short_answers, only: word_meant
+  use mech9_short_answers, only: word_meant, full_form
+  use mech9_units, only: units_type
+  use mech9_answer_units, only: in_file_units, part_length
+  use mech9_question_words, only: angle_unit, si_units_here, units_of_draft
   use mech9_draft, only: draft_type, integer_of
   use mech9_draft_check, only: problem_with, problem_with_joint
   use mech9_draft_joints, only: give_joints
   use mech9_outline, only: ways, drop_empty_guesses
-  use mech9_question_words, only: angle_unit
   use mech9_interview, only: most_parts
   use mech9_seldom, only: seldom_rows
   use mech9_topics, only: topics
-  use mech9_planar_links, only: is_placed, point_in_plane, gives_lengths
+  use mech9_planar_links, only: is_placed, point_in_plane, gives_lengths, plane_so_far, point_of_plane
   use mech9_questions, only: question_type, entry_name, label_of, ask_item, ask_seldom, ask_way, ask_joints, ask_geometry
   use mech9_conversation, only: conversation_type
   implicit none
@@ -56,15 +58,18 @@ contains
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     type(question_type), intent(in) :: question              !< the question
     character(len=*), intent(in) :: line                     !< the answer, without blanks around it
-    character(len=:), allocatable :: text, problem
+    character(len=:), allocatable :: text, converted, problem
 
     if (lower(line(:min(len(line), 8))) == 'default') then
       call conversation%interview%unnote()
       call conversation%keep()
       return
     end if
-    call read_answer(item_table(question%row), line_meant(conversation, question, line), text, problem, &
-                     merge(radians_per_degree, 1.0_wp, angle_unit(conversation%interview%draft) == 'deg'))
+    call convert_units(conversation, question, line, converted, problem)
+    if (problem == '') &
+      call read_answer(item_table(question%row), line_meant(conversation, question, converted), text, problem, &
+                       merge(radians_per_degree, 1.0_wp, angle_unit(conversation%interview%draft) == 'deg'))
+    if (problem == '') call doubt_length(conversation, question, line, text, problem)
     if (problem == '') call hold_against_rest(conversation, question, text, problem)
     if (problem == '') call count_independent(conversation, text, problem)
     if (problem == '') then
@@ -74,7 +79,34 @@ contains
     end if
   end subroutine take_item
 
-  !> A line in which a length, or two numbers, become a point where the lengths of planar links are asked for.
+  !> Convert the units of an answer into those of the file. For gravity along an axis it is 9.81 m/s^2 in them.
+  pure subroutine convert_units(conversation, question, line, converted, problem)
+    class(conversation_type), intent(in) :: conversation      !< the conversation as it stands
+    type(question_type), intent(in) :: question               !< the question
+    character(len=*), intent(in) :: line                      !< the answer, without blanks around it
+    character(len=:), allocatable, intent(out) :: converted   !< the answer in the units of the file
+    character(len=:), allocatable, intent(out) :: problem     !< why a unit does not fit; empty: nothing is wrong
+    character(len=part_length), allocatable :: wanted(:)
+    character(len=:), allocatable :: full
+    type(units_type) :: units
+
+    converted = line
+    problem = ''
+    associate (row => item_table(question%row), draft => conversation%interview%draft)
+      if (row%type /= 'real') return
+      units = units_of_draft(draft)
+      full = line
+      if (row%group == 'gravity' .and. units%length_name /= 'm') then
+        full = full_form(row, line)
+        if (full /= line) full = full//' m/s^2'
+      end if
+      call si_units_here(question, draft, wanted)
+      call in_file_units(full, wanted, units, converted, problem)
+    end associate
+  end subroutine convert_units
+
+  !> A line in which a length, or two numbers, become a point where the lengths of planar links are asked for, and two numbers where
+  !> the mechanism is planar so far.
   pure function line_meant(conversation, question, line) result(text)
     class(conversation_type), intent(in) :: conversation   !< the conversation as it stands
     type(question_type), intent(in) :: question            !< the question
@@ -82,6 +114,11 @@ contains
     character(len=:), allocatable :: text
 
     text = numbers_meant(conversation%interview%draft, item_table(question%row), line)
+    associate (row => item_table(question%row), draft => conversation%interview%draft)
+      if (row%unit == 'm' .and. row%low == 3 .and. row%high == 3) then
+        if (plane_so_far(draft) > 0) text = point_of_plane(line, plane_so_far(draft))
+      end if
+    end associate
     if (group_table(question%group_row)%name /= 'pair') return
     associate (interview => conversation%interview)
       if (is_placed(interview%draft, interview%outline, question%place, trim(item_table(question%row)%name))) &
@@ -135,6 +172,34 @@ contains
       if (draft%has(group, i, key)) number = draft%value(group, i, key)
     end do
   end function number_called
+
+  !> Refuse a length once that is as long as if millimetres were meant, where neither the answer nor the file names a unit. All
+  !> lengths are accepted after one was given again.
+  subroutine doubt_length(conversation, question, line, text, problem)
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    type(question_type), intent(in) :: question              !< the question
+    character(len=*), intent(in) :: line                     !< the answer as it was typed
+    character(len=*), intent(in) :: text                     !< the answer as a data file writes it
+    character(len=:), allocatable, intent(inout) :: problem  !< the reason against the answer; empty: none
+    real(wp), parameter :: doubtful = 20.0_wp                !< few mechanisms are longer [m]
+    real(wp) :: numbers(3)
+    integer :: iostat, n
+
+    associate (row => item_table(question%row))
+      if (conversation%is_large .or. row%unit /= 'm' .or. row%type /= 'real') return
+      n = min(row%high, size(numbers))
+    end associate
+    if (conversation%interview%draft%has('mechanism', 1, 'length_unit')) return
+    if (verify(line, '0123456789+-.,eEdD '//achar(9)) > 0) return
+    read (text, *, iostat=iostat) numbers(:n)
+    if (iostat /= 0) return
+    if (all(abs(numbers(:n)) < doubtful)) return
+    conversation%is_large = text == conversation%doubted
+    conversation%doubted = text
+    if (.not. conversation%is_large) &
+      problem = 'Lengths are in m, and this one is '//to_text(maxval(abs(numbers(:n))))//' m. Name the unit if another one is '// &
+                'meant, as in 120 mm. If it is so here, give the same answer again.'
+  end subroutine doubt_length
 
   !> Check the number of coordinates that an answer makes independent. Refuse an answer that the structure hardly allows
   !> once, and accept it if it is given again.

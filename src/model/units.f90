@@ -21,6 +21,7 @@ module mech9_units
     real(wp) :: angle = 1.0_wp                    !< [rad]
     real(wp) :: rate = 1.0_wp                     !< of angles in time [rad/s]
     character(len=2) :: length_name = 'm'
+    logical :: names_length = .false.             !< the data file names the unit of lengths
     character(len=3) :: force_name = 'N'
     character(len=2) :: mass_name = 'kg'
     character(len=3) :: angle_name = 'rad'

@@ -3,6 +3,7 @@
 !> Each link gets a system of its own. Its origin is in the pair with the lowest number on the link, and its x axis leads to the next
 !> pair. Lengths, or x and y, place the other pairs on the link. All axes of turns are z.
 module mech9_planar_links
+  use mech9_kinds, only: wp
   use mech9_grammar, only: words_of
   use mech9_draft, only: draft_type
   use mech9_draft_joints, only: kind_in, number_in, has_joints
@@ -10,6 +11,7 @@ module mech9_planar_links
   implicit none
   private
   public :: gives_lengths, may_be_planar, settle_planar_pairs, is_settled, is_placed, origin_pair, link_of_point, point_in_plane
+  public :: plane_so_far, point_of_plane
 
 contains
 
@@ -130,4 +132,66 @@ contains
       text = line//', 0'
     end select
   end function point_in_plane
+
+  !> The number of the axis of link 1 that stands at right angles to the plane of a mechanism that is planar so far: all axes of turns
+  !> are along it, and slides are across it; z while no pair has an axis. 0 where the mechanism is not planar.
+  pure integer function plane_so_far(draft) result(normal)
+    type(draft_type), intent(in) :: draft      !< groups and names with their values as text
+    real(wp) :: axis(3)
+    character(len=:), allocatable :: kind, text
+    logical :: may_be(3), is_known
+    integer :: place, iostat, i
+
+    normal = 0
+    may_be = .true.
+    is_known = .false.
+    if (has_joints(draft)) return
+    do place = 1, draft%count_of('pair')
+      if (.not. draft%has('pair', place, 'axis')) cycle
+      kind = kind_in(draft, draft%find('pair', place))
+      text = draft%value('pair', place, 'axis')
+      read (text, *, iostat=iostat) axis
+      if (iostat /= 0) return
+      is_known = .true.
+      do i = 1, 3
+        if (kind == 'prismatic') then
+          may_be(i) = may_be(i) .and. .not. abs(axis(i)) > 0.0_wp
+        else
+          may_be(i) = may_be(i) .and. kind == 'revolute' .and. .not. any(abs(pack(axis, [1, 2, 3] /= i)) > 0.0_wp)
+        end if
+      end do
+    end do
+    if (.not. is_known .or. may_be(3)) then
+      normal = 3
+    else if (count(may_be) == 1) then
+      normal = findloc(may_be, .true., dim=1)
+    end if
+  end function plane_so_far
+
+  !> A point from two numbers that are its coordinates in a plane. Other answers stay as they are.
+  pure function point_of_plane(line, normal) result(text)
+    character(len=*), intent(in) :: line   !< the answer, without blanks around it
+    integer, intent(in) :: normal          !< number of the axis at right angles to the plane
+    character(len=:), allocatable :: text
+    character(len=len(line)), allocatable :: words(:)
+    character(len=len(line)) :: plain
+    integer :: i
+
+    text = line
+    ! a length alone is no point here
+    if (point_in_plane(line) /= line//', 0') return
+    plain = line
+    do i = 1, len(plain)
+      if (plain(i:i) == ',') plain(i:i) = ' '
+    end do
+    words = words_of(plain)
+    select case (normal)
+    case (1)
+      text = '0, '//trim(words(1))//', '//trim(words(2))
+    case (2)
+      text = trim(words(1))//', 0, '//trim(words(2))
+    case default
+      text = trim(words(1))//', '//trim(words(2))//', 0'
+    end select
+  end function point_of_plane
 end module mech9_planar_links

@@ -4,6 +4,8 @@ module mech9_question_words
   use mech9_text, only: to_text, string_type
   use mech9_grammar, only: group_table, item_table, words_of
   use mech9_data_help, only: default_text
+  use mech9_units, only: units_type, units_of_words
+  use mech9_answer_units, only: part_length
   use mech9_draft, only: draft_type, unquoted
   use mech9_topics, only: groups_of_topic, can_be_left_out
   use mech9_compound_joint, only: compound_kinds
@@ -16,8 +18,8 @@ module mech9_question_words
                              ask_guesses, ask_joints, ask_geometry
   implicit none
   private
-  public :: default_type, default_of, prompt_of, heading_of, unit_here, coordinate_kind, angle_unit, words_for
-  public :: is_lacking, is_needed, seldom_names
+  public :: default_type, default_of, prompt_of, heading_of, coordinate_kind, words_for
+  public :: unit_here, si_units_here, units_of_draft, angle_unit, is_lacking, is_needed, seldom_names
 
   !> The answer that Enter gives.
   type :: default_type
@@ -252,20 +254,93 @@ contains
     type(question_type), intent(in) :: question  !< the question
     type(draft_type), intent(in) :: draft        !< groups and names with their values as text
     character(len=:), allocatable :: unit
+
+    unit = in_units_of(draft, unit_in_si(question, draft))
+  end function unit_here
+
+  !> The unit of a name in SI, with rad or m for the unit of a coordinate.
+  pure function unit_in_si(question, draft) result(unit)
+    type(question_type), intent(in) :: question  !< the question
+    type(draft_type), intent(in) :: draft        !< groups and names with their values as text
+    character(len=:), allocatable :: unit
     character(len=:), allocatable :: kind, q
 
     unit = trim(item_table(question%row)%unit)
     kind = coordinate_kind(question, draft)
-    q = angle_unit(draft)
+    q = 'rad'
     if (kind == 'prismatic' .or. kind == 'path') q = 'm'
     if (kind == 'user') q = ''
     if (item_table(question%row)%group == 'load' .and. item_table(question%row)%kinds == 'coordinate') &
       unit = unit_of_load(unit, kind)
-    call replace('angle', angle_unit(draft), unit)
+    call replace('angle', 'rad', unit)
     if (q == '' .and. has_word(unit, 'q')) unit = ''
     call replace('q', q, unit)
     call replace('q', q, unit)
-  end function unit_here
+  end function unit_in_si
+
+  !> Name the units of a list in those of this data file.
+  pure function in_units_of(draft, list) result(text)
+    type(draft_type), intent(in) :: draft        !< groups and names with their values as text
+    character(len=*), intent(in) :: list         !< SI units with commas or `or` between them
+    character(len=:), allocatable :: text
+    type(units_type) :: units
+    integer :: first, last, gap
+
+    units = units_of_draft(draft)
+    text = ''
+    first = 1
+    do while (first <= len(list))
+      last = index(list(first:), ', ')
+      gap = 2
+      if (index(list(first:), ' or ') > 0) then
+        last = index(list(first:), ' or ')
+        gap = 4
+      end if
+      if (last == 0) then
+        text = text//trim(units%name_of(list(first:)))
+        return
+      end if
+      last = first + last - 2
+      text = text//trim(units%name_of(list(first:last)))//list(last + 1:last + gap)
+      first = last + gap + 1
+    end do
+  end function in_units_of
+
+  !> The SI units of the numbers of an answer, one for each place of the list, the last one for all further places; empty where a
+  !> number is plain or its unit is not known.
+  pure subroutine si_units_here(question, draft, list)
+    type(question_type), intent(in) :: question                !< the question
+    type(draft_type), intent(in) :: draft                      !< groups and names with their values as text
+    character(len=part_length), allocatable, intent(out) :: list(:)   !< the units
+    character(len=:), allocatable :: unit, kind, q
+    integer :: power
+
+    unit = unit_in_si(question, draft)
+    kind = coordinate_kind(question, draft)
+    q = 'rad'
+    if (kind == 'prismatic' .or. kind == 'path') q = 'm'
+    list = [character(len=part_length) :: unit]
+    select case (item_table(question%row)%unit)
+    case ('m, angle')
+      list = [character(len=part_length) :: 'm', 'rad', 'm', 'rad']
+    case ('q, q/s, ...')
+      list = [character(len=part_length) :: q, q//'/s', (q//'/s^'//to_text(power), power=2, 9)]
+      if (kind == '' .or. kind == 'user') list = [character(len=part_length) :: '']
+    case default
+      if (index(item_table(question%row)%unit, 'q') > 0 .and. kind == '') list = ''
+      if (scan(unit, ',') > 0 .or. index(unit, ' or ') > 0 .or. index(unit, ' per ') > 0) list = ''
+    end select
+  end subroutine si_units_here
+
+  !> The units of this data file.
+  pure type(units_type) function units_of_draft(draft) result(units)
+    type(draft_type), intent(in) :: draft  !< groups and names with their values as text
+
+    units = units_of_words(unquoted(draft%value('mechanism', 1, 'length_unit')), angle_unit(draft), &
+                           unquoted(draft%value('mechanism', 1, 'force_unit')), &
+                           unquoted(draft%value('mechanism', 1, 'mass_unit')), &
+                           unquoted(draft%value('mechanism', 1, 'rate_unit')))
+  end function units_of_draft
 
   !> The unit that fits the kind of pair, out of those for a length and for an angle, such as "N or N m".
   pure function unit_of_load(both, kind) result(unit)

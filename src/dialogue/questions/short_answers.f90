@@ -27,7 +27,7 @@ contains
     text = line
     if (len(line) > longest .or. line == '') return
     if (row%words /= '') then
-      word = word_meant(line, words_of(trim(row%words)))
+      word = word_in_table(line, words_of(trim(row%words)))
       if (row%group == 'pair' .and. word == '') word = kind_of_pair(line)
       if (word /= '') text = word
     else if (row%type == 'real' .and. index(directions, ' '//trim(row%name)//' ') > 0) then
@@ -39,6 +39,23 @@ contains
       text = two_numbers(line)
     end if
   end function full_form
+
+  !> The word of the table of names that an answer means, as it stands there; empty if there is none or more than one.
+  pure function word_in_table(line, words) result(word)
+    character(len=*), intent(in) :: line      !< the answer, without blanks around it
+    character(len=*), intent(in) :: words(:)  !< the words allowed
+    character(len=:), allocatable :: word
+    character(len=len(words)) :: lowered(size(words))
+    integer :: i
+
+    do i = 1, size(words)
+      lowered(i) = lower(words(i))
+    end do
+    word = word_meant(line, lowered)
+    if (word == '') return
+    i = findloc(lowered == word, .true., dim=1)
+    word = trim(words(i))
+  end function word_in_table
 
   !> The kind of pair that a mechanic's word means; empty for other words.
   pure function kind_of_pair(line) result(kind)

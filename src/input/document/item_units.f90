@@ -23,6 +23,7 @@ contains
     if (has_name(group, 'rate_unit')) rate = get_text(group, 'rate_unit')
     units = units_of_words(get_text(group, 'length_unit'), get_text(group, 'angle_unit'), get_text(group, 'force_unit'), &
                            get_text(group, 'mass_unit'), trim(rate))
+    units%names_length = has_name(group, 'length_unit')
   end function units_of_document
 
   !> Give the items of all sound groups their factors to SI.

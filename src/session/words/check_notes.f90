@@ -27,6 +27,8 @@ module mech9_check_notes
 !> meant in radians: pi is often rounded to 3.14.
   real(wp), parameter :: rounded_pi = 1.0e-3_wp
   integer, parameter :: most_quarters = 8
+  !> Links of this length [m] were probably meant in millimetres.
+  real(wp), parameter :: very_long = 20.0_wp
 
 contains
 
@@ -63,7 +65,23 @@ contains
     end do
     call print_jumps(unit, model)
     call print_effects(unit, model, with_masses)
+    call note_size(unit, model%mechanism)
   end subroutine print_notes
+
+  !> Note dimensions in metres that are as large as if millimetres were meant, where the file names no unit of lengths.
+  subroutine note_size(unit, mechanism)
+    integer, intent(in) :: unit                    !< Fortran unit to write to
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
+    type(link_dimension_type), allocatable :: dimensions(:)
+    real(wp) :: largest
+
+    if (mechanism%units%names_length) return
+    call link_dimensions(mechanism, dimensions)
+    largest = 0.0_wp
+    if (size(dimensions) > 0) largest = max(maxval(dimensions%distance), maxval(dimensions%between_points))
+    if (largest >= very_long) write (unit, '(a)') 'note: the longest link has '//to_text(largest, 4)//' m between two pairs; '// &
+      'where millimetres are meant, give &mechanism length_unit=''mm'''
+  end subroutine note_size
 
   !> Note an angle or a rate that seems to be in the other unit.
   subroutine note_angle(unit, mechanism, k, what, q, dq)
