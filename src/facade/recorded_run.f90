@@ -52,6 +52,7 @@ module mech9_recorded_run
     procedure :: take_rows
     procedure :: quantities
     procedure :: gradients
+    procedure :: section
     procedure :: report
     procedure :: lay_out
     procedure :: close => close_run
@@ -122,6 +123,7 @@ contains
       call self%run%motion%assemble(self%model, err)
     end if
     if (.not. allocated(err)) call self%run%prepare(self%model, err, self%variable, pictures)
+    if (.not. allocated(err)) call self%run%source%begin_section(err)
     if (.not. allocated(err)) call find_tolerances(self, err, pictures)
     call mechanism%point_at(err)
     if (allocated(err)) call self%close()
@@ -278,6 +280,30 @@ contains
     end if
     if (.not. allocated(values)) allocate (values(0, 0))
   end subroutine gradients
+
+  !> The points of the section so far, where the data file requests one: columns point, t and those of the run. There are no columns
+  !> without a section.
+  subroutine section(self, names, points, units)
+    class(recorded_run_type), intent(in) :: self                        !< the run
+    character(len=:), allocatable, intent(out) :: names(:)              !< (columns)
+    real(wp), allocatable, intent(out) :: points(:, :)                  !< (columns,points) in the units of the columns
+    character(len=:), allocatable, intent(out), optional :: units(:)    !< (columns)
+    type(string_type) :: none(0)
+
+    if (associated(self%run)) then
+      if (allocated(self%run%source%section)) then
+        associate (found => self%run%source%section)
+          points = found%points(:, :found%count)
+          names = found%names
+          if (present(units)) units = found%units
+        end associate
+      end if
+    end if
+    if (allocated(points)) return
+    allocate (points(0, 0))
+    call texts_of_one_length(none, names)
+    if (present(units)) call texts_of_one_length(none, units)
+  end subroutine section
 
   !> The report of the run as JSON, as --report writes it: how it ended, and the work that it took. It is empty where no run is begun.
   subroutine report(self, text)

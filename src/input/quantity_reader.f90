@@ -1,15 +1,18 @@
-!> Quantities of a run that the groups &quantity of a checked document request.
+!> Quantities of a run, its section and its exponents, as the groups &quantity, &section and &exponents of a checked document request them.
 module mech9_quantity_reader
+  use mech9_kinds, only: wp
   use mech9_text, only: to_text
-  use mech9_document, only: document_type
-  use mech9_lookup, only: groups_named, has_name, get_real, get_text, span_of
+  use mech9_mechanism, only: mechanism_type
+  use mech9_document, only: document_type, group_type
+  use mech9_lookup, only: groups_named, group_or_empty, has_group, has_name, get_integer, get_logical, get_real, get_text, span_of
   use mech9_name_check, only: check_name
   use mech9_diagnostics, only: diagnostics_type
   use mech9_request, only: time_grid_type
   use mech9_quantity, only: quantity_type
+  use mech9_long_term, only: section_type, exponents_type
   implicit none
   private
-  public :: read_quantities
+  public :: read_quantities, read_section, read_exponents
 
 contains
 
@@ -44,4 +47,75 @@ contains
       end associate
     end do
   end subroutine read_quantities
+
+  !> Read the group &section. A column is looked for when the columns are known.
+  pure subroutine read_section(document, mechanism, section, diagnostics)
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(mechanism_type), intent(in) :: mechanism         !< with its pairs
+    type(section_type), intent(out) :: section            !< the section; not wanted where there is no group
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+    type(group_type) :: group
+
+    group = group_or_empty(document, 'section')
+    section%is_wanted = has_group(document, 'section')
+    section%column = get_text(group, 'column')
+    section%table = get_text(group, 'table')
+    if (.not. section%is_wanted) return
+    if (has_name(group, 'coordinate')) section%coordinate = get_integer(group, 'coordinate')
+    if (has_name(group, 'period')) section%period = get_real(group, 'period')
+    section%value = get_real(group, 'value')
+    section%direction = get_integer(group, 'direction')
+    section%every_turn = get_logical(group, 'every_turn')
+    section%transient = get_real(group, 'transient')
+    section%reduce_angles = get_logical(group, 'reduce_angles')
+    section%place = diagnostics%place(group%span)
+    if (has_name(group, 'column')) section%place = diagnostics%place(span_of(group, 'column', 1))
+    if (count([has_name(group, 'coordinate'), has_name(group, 'column'), has_name(group, 'period')]) /= 1) &
+      call diagnostics%add(group%span, 'a section needs one of coordinate=, column= and period=, to say where its points are')
+    if (abs(section%direction) > 1) &
+      call diagnostics%add(span_of(group, 'direction', 1), 'direction is 1 (the value grows), -1 (it falls) or 0 (both)')
+    call check_names_of_section(group, section, mechanism, diagnostics)
+  end subroutine read_section
+
+  !> Report a coordinate that does not exist, and names that belong to another kind of section.
+  pure subroutine check_names_of_section(group, section, mechanism, diagnostics)
+    type(group_type), intent(in) :: group                 !< the group of the data file
+    type(section_type), intent(in) :: section             !< the section
+    type(mechanism_type), intent(in) :: mechanism         !< with its pairs
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+    character(len=10), parameter :: of_value(3) = [character(len=10) :: 'value', 'direction', 'every_turn']
+    logical :: turns
+    integer :: i
+
+    turns = .false.
+    if (section%coordinate > size(mechanism%pairs) .and. size(mechanism%pairs) > 0) then
+      call diagnostics%add(span_of(group, 'coordinate', 1), 'there is no coordinate '//to_text(section%coordinate)// &
+                           '; the coordinates are 1 to '//to_text(size(mechanism%pairs)))
+    else if (section%coordinate > 0 .and. size(mechanism%pairs) > 0) then
+      if (allocated(mechanism%pairs(section%coordinate)%pair)) &
+        turns = mechanism%pairs(section%coordinate)%pair%angular
+    end if
+    if (section%every_turn .and. .not. turns) &
+      call diagnostics%add(span_of(group, 'every_turn', 1), 'every_turn belongs to a coordinate that turns; leave it out')
+    if (.not. section%period > 0.0_wp) return
+    do i = 1, size(of_value)
+      if (has_name(group, trim(of_value(i)))) &
+        call diagnostics%add(span_of(group, trim(of_value(i)), 1), 'the points of a period have no '//trim(of_value(i))// &
+                             '; leave it out, or give coordinate= in place of period=')
+    end do
+  end subroutine check_names_of_section
+
+  !> Read the group &exponents.
+  pure subroutine read_exponents(document, exponents, diagnostics)
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(exponents_type), intent(out) :: exponents        !< how they are found
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+    type(group_type) :: group
+
+    group = group_or_empty(document, 'exponents')
+    if (.not. has_group(document, 'exponents')) return
+    exponents%transient = get_real(group, 'transient')
+    if (has_name(group, 'time')) exponents%time = get_real(group, 'time')
+    exponents%place = diagnostics%place(group%span)
+  end subroutine read_exponents
 end module mech9_quantity_reader

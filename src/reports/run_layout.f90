@@ -11,6 +11,7 @@ module mech9_run_layout
   use mech9_structure_layout, only: write_structure
   use mech9_force_layout, only: write_uniqueness
   use mech9_quantity_layout, only: write_quantities
+  use mech9_section_layout, only: write_section
   use mech9_fact_layout, only: put_diagnostics
   use mech9_provenance_layout, only: origin_type, write_origin
   use mech9_data_set_table, only: data_set_table_type
@@ -44,6 +45,7 @@ contains
     end associate
     call put_diagnostics(facts, table)
     call put_diagnostics(facts, table, exit_code)
+    if (allocated(run%source%section)) call write_section(run%source%section, table)
     free => run%motion%free()
     if (.not. associated(free)) return
     call write_coefficients(table, run%motion%plan, free)

@@ -40,6 +40,11 @@ contains
     free => run%motion%free()
     if (associated(free)) call add_free(json, run%motion, free)
     call report_quantities(run%source%quantities, json)
+    if (allocated(run%source%section)) then
+      call json%begin_object('section')
+      call json%add('points', run%source%section%count)
+      call json%end_object()
+    end if
     associate (forces => run%source%forces)
       if (allocated(forces%unique)) &
         call add_uniqueness(json, reacting_pairs(model), forces%unique, model%request%output%reactions_in_links)

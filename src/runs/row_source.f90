@@ -1,8 +1,8 @@
 !> Rows of results from a simulation: a row of numbers for each output time.
 module mech9_row_source
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type
-  use mech9_text, only: string_type
+  use mech9_error, only: error_type, raise, exit_data
+  use mech9_text, only: string_type, texts_of_one_length
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
   use mech9_plan, only: plan_type
@@ -22,11 +22,13 @@ module mech9_row_source
   use mech9_impact_record, only: impact_record_type, new_impact_record
   use mech9_varied_record, only: varied_record_type
   use mech9_quantity_record, only: quantity_record_type
+  use mech9_missing_column, only: find_remedy
+  use mech9_section_record, only: section_record_type, row_filler_type, new_section_record
   implicit none
   private
   public :: row_source_type, new_row_source, find_columns
 
-  type :: row_source_type
+  type, extends(row_filler_type) :: row_source_type
     class(simulation_type), pointer, private :: simulation => null()   !< not owned
     type(columns_type) :: columns
     type(force_record_type) :: forces      !< computes the forces that are recorded
@@ -35,6 +37,7 @@ module mech9_row_source
     type(varied_record_type) :: varied     !< finds those of forces and energies
     type(film_type), allocatable :: film   !< takes the position of each row, where it is allocated
     type(quantity_record_type) :: quantities   !< of the whole run
+    class(section_record_type), allocatable :: section   !< takes the points of a section, where it is allocated
     type(tangent_type), allocatable, private :: tangents(:)   !< (P) of the constants, where quantities need those of joints of laws
     class(interruption_type), pointer :: interruption => null()   !< stops the motion, which may go on then; not owned
     integer, private :: waiting = 0                !< rows that wait for their derivatives, in the order of time
@@ -48,6 +51,9 @@ module mech9_row_source
     integer, allocatable, private :: wanted_between(:)   !< columns whose derivatives quantities need between outputs
   contains
     procedure :: begin_quantities
+    procedure :: begin_section
+    procedure :: fill_values
+    procedure :: width => width_of_rows
     procedure :: add_row
     procedure :: complete
     procedure :: standing
@@ -154,6 +160,45 @@ contains
     if (self%columns%sensitivities == 0) self%wanted = self%wanted_between
   end subroutine begin_quantities
 
+  !> Take the points of the section that the model requests, if it requests one. Fails with exit_data where its column is not recorded.
+  subroutine begin_section(self, err)
+    class(row_source_type), intent(inout) :: self       !< the row source, before the start
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    character(len=:), allocatable :: remedy, names(:), units(:)
+    integer :: n
+    logical :: found
+
+    if (.not. self%simulation%model%request%section%is_wanted) return
+    allocate (self%section)
+    ! an estimated error, the last column of a motion, is known at outputs alone
+    n = self%columns%count - self%columns%sensitivities - merge(1, 0, self%simulation%with_error)
+    associate (model => self%simulation%model, columns => self%columns)
+      call texts_of_one_length(columns%names(:n), names)
+      call texts_of_one_length(columns%units(:n), units)
+      call new_section_record(model, names, units, columns%motion, self%section, found)
+      if (found) return
+      call find_remedy(model%request%section%column, model, columns, remedy)
+      call raise(err, exit_data, 'the section is by column '''//model%request%section%column//''', which is not recorded'//remedy, &
+                 model%request%section%place)
+    end associate
+  end subroutine begin_section
+
+  !> Add the points of the section up to a time.
+  subroutine go_on_with_section(self, t, err)
+    type(row_source_type), intent(inout), target :: self      !< the row source
+    real(wp), intent(in) :: t                                 !< the time [s]
+    type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
+    class(section_record_type), allocatable :: section
+    class(simulation_type), pointer :: simulation
+
+    if (.not. allocated(self%section)) return
+    ! the section and who fills its rows are two
+    call move_alloc(self%section, section)
+    simulation => self%simulation
+    call section%go_on(simulation, self, t, err)
+    call move_alloc(section, self%section)
+  end subroutine go_on_with_section
+
   !> Go on to output time t. Its row follows those that are complete, and those that wait for their derivatives: these are found for
   !> many rows at once. Output times come in order, the first one is the start. Quantities take what they need on the way. After a
   !> failure no row waits: those before the failure are complete. A pause is a failure after which the same output may be asked for again.
@@ -167,11 +212,14 @@ contains
 
     if (self%simulation%started) then
       if (.not. self%quantities%is_empty()) call visit_between(self, t, rows, count, err)
+      if (.not. allocated(err)) call go_on_with_section(self, t, err)
       if (.not. allocated(err)) call self%simulation%advance(t, err)
     else if (associated(self%interruption)) then
       call self%simulation%start(err, self%interruption)
+      if (.not. allocated(err)) call go_on_with_section(self, t, err)
     else
       call self%simulation%start(err)
+      if (.not. allocated(err)) call go_on_with_section(self, t, err)
     end if
     if (.not. allocated(err)) call fill_row(self, rows(:, count + self%outputs + 1), err)
     if (.not. allocated(err)) then
@@ -259,7 +307,8 @@ contains
 
     call self%quantities%times_before(self%simulation%model, self%last_output, t, times)
     do i = self%visited + 1, size(times)
-      call self%simulation%visit(times(i), err)
+      call go_on_with_section(self, times(i), err)
+      if (.not. allocated(err)) call self%simulation%visit(times(i), err)
       if (.not. allocated(err)) self%visited = i
       if (.not. allocated(err)) call fill_row(self, self%between(:, self%waiting + 1), err)
       if (.not. allocated(err)) call defer(self, .false., t, rows, count, err)
@@ -334,8 +383,15 @@ contains
     end do
   end subroutine complete_outputs
 
-  !> Fill a row with the numbers of the present position.
-  subroutine fill_row(self, row, err)
+  !> Number of columns of a row.
+  integer function width_of_rows(self)
+    class(row_source_type), intent(in) :: self   !< the row source
+
+    width_of_rows = self%columns%width()
+  end function width_of_rows
+
+  !> Fill a row with the numbers of the present position, but for derivatives by parameters.
+  subroutine fill_values(self, row, err)
     class(row_source_type), intent(inout) :: self       !< the row source
     real(wp), intent(inout), contiguous :: row(:)       !< (columns%width()) in the units of the results
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
@@ -374,6 +430,16 @@ contains
       if (simulation%with_error) row(next + 1) = simulation%error
     end associate
     call self%columns%convert(row)
+  end subroutine fill_values
+
+  !> Fill a row with the numbers of the present position; its derivatives by parameters may wait.
+  subroutine fill_row(self, row, err)
+    class(row_source_type), intent(inout) :: self       !< the row source
+    real(wp), intent(inout), contiguous :: row(:)       !< (columns%width()) in the units of the results
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+
+    call self%fill_values(row, err)
+    if (allocated(err)) return
     if (allocated(self%sensitivity)) then
       call self%simulation%show_sensitivity(self%sensitivity, err)
       if (allocated(err)) return

@@ -28,6 +28,7 @@ module mech9_run_task
   use mech9_picture_requests, only: picture_requests_type
   use mech9_results, only: results_type
   use mech9_quantity_results, only: print_quantities
+  use mech9_section_results, only: check_section_plots, write_section_results, print_section
   use mech9_signal_interruption, only: signal_interruption_type
   use mech9_run_outcome, only: run_outcome_type
   use mech9_run_facts, only: list_run_facts
@@ -60,6 +61,11 @@ contains
 
     associate (motion => run%motion, source => run%source)
       call source%forces%judge(model, motion%plan, motion%start)
+      reported = .false.
+      call source%begin_section(err)
+      if (.not. allocated(err)) call check_section_plots(options, model, source%section, err)
+      if (allocated(err)) call diagnostics%add_error(err)
+      if (allocated(err)) return
       if (pictures%any_wanted()) call run%record_film(model)
       call begin_run(options, model, motion%plan, motion%simulation%requested, source, results, diagnostics, ready)
       if (.not. options%has('quiet')) call print_start_way(error_unit, model%mechanism, motion%way)
@@ -141,6 +147,11 @@ contains
     hdf5 => results%hdf5()
     if (associated(hdf5) .and. .not. source%quantities%is_empty()) &
       call write_quantities(source%quantities, hdf5%file, again=.true.)
+    if (allocated(source%section)) then
+      call write_section_results(options, model, source%section, results%table_path, hdf5, err)
+      if (allocated(err)) call diagnostics%add_error(err)
+      if (.not. options%has('quiet')) call print_section(error_unit, source%section, .not. options%has('no-write'))
+    end if
     call results%close(err)
     if (allocated(err)) call diagnostics%add_error(err)
     if (.not. options%has('quiet')) call print_quantities(error_unit, source%quantities)

@@ -136,7 +136,7 @@ contains
       call read_model(document, task%program, model, diagnostics)
       if (.not. diagnostics%failed()) then
         if (.not. options%has('quiet')) call print_unused_options(error_unit, options, model)
-        call refuse_overwriting(options, inputs, err, model%request%output)
+        call refuse_overwriting(options, inputs, err, model%request%output, model%request%section)
         reported = reported .or. allocated(err)
         if (allocated(err)) call diagnostics%add_error(err)
         if (options%has('study') .or. options%has('optimize') .or. options%has('dakota') .or. &

@@ -114,6 +114,7 @@ contains
     real(wp), allocatable :: row(:)
 
     call run%prepare(model, err, variable)
+    if (.not. allocated(err)) call run%source%begin_section(err)
     if (allocated(err)) return
     allocate (row(run%source%columns%width()))
     call run%source%row_at(model%request%time%start, row, err)

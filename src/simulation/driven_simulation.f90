@@ -7,7 +7,7 @@ module mech9_driven_simulation
   use mech9_plan, only: plan_type, copy_plan
   use mech9_state, only: state_type, copy_state
   use mech9_start_path, only: start_way_type, assemble_start
-  use mech9_requested, only: requested_by_results, add_forces, add_stops, leave_out_unrequested
+  use mech9_requested, only: requested_by_results, add_forces, add_stops, add_section, leave_out_unrequested
   use mech9_driven_motion, only: driven_motion_type, set_inputs
   use mech9_driven_counts, only: driven_counts_type, keep_counts, return_to_counts
   use mech9_batch_products, only: batch_size
@@ -39,6 +39,7 @@ module mech9_driven_simulation
   contains
     procedure :: begin
     procedure :: go_to
+    procedure :: stride
     procedure :: present => present_state
     procedure :: present_for_forces
     procedure :: present_closure
@@ -49,6 +50,10 @@ module mech9_driven_simulation
     procedure :: keep_work
     procedure :: return_to_work
   end type driven_simulation_type
+
+  !> Longest way of a drive within a stride, in the unit of its coordinate, and halvings of a longer one.
+  real(wp), parameter :: longest_way = 0.1_wp
+  integer, parameter :: most_halvings = 60
 
 contains
 
@@ -85,6 +90,7 @@ contains
     if (present(with_masses)) simulation%with_energies = with_masses .and. model%request%output%energies
     if (simulation%with_energies) call add_forces(model%mechanism, simulation%requested)
     call add_stops(model%mechanism, simulation%requested)
+    call add_section(model%request%section, simulation%requested)
     call leave_out_unrequested(simulation%plan, simulation%requested)
     simulation%with_conditioning = model%request%output%conditioning
     if (model%mechanism%has_frictions() .and. model%request%output%with_forces()) allocate (simulation%frictions)
@@ -130,6 +136,45 @@ contains
       call check_stops(self%model, self%plan, self%angles%held%drives, self%driven, before, self%contacts, err)
     if (allocated(self%frictions) .and. .not. allocated(err)) call find_frictions(self, err)
   end subroutine go_to
+
+  !> Go on by a way within which no drive moves far, and the motion of the others is known well by its ends.
+  subroutine stride(self, t, from, to, at_joint, err)
+    class(driven_simulation_type), intent(inout) :: self   !< the simulation, started
+    real(wp), intent(in) :: t                              !< time to go towards [s]
+    real(wp), intent(out) :: from                          !< start of the way [s]
+    real(wp), intent(inout) :: to                          !< end of the way before; then of this one [s]
+    logical, intent(out) :: at_joint                       !< rates may jump at its end: never told
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    real(wp) :: h, next
+    integer :: halving
+
+    at_joint = .false.
+    from = to
+    h = t - from
+    do halving = 1, most_halvings
+      if (farthest_way(self, from, h) <= longest_way) exit
+      h = 0.5_wp*h
+    end do
+    next = merge(t, from + h, halving == 1)
+    call self%stop_if_interrupted(next, err)
+    if (.not. allocated(err)) call self%go_to(next, err)
+    if (.not. allocated(err)) to = next
+  end subroutine stride
+
+  !> A bound of the way of all drives within a time, in the units of their coordinates.
+  real(wp) function farthest_way(self, from, h) result(way)
+    class(driven_simulation_type), intent(in) :: self      !< the simulation
+    real(wp), intent(in) :: from                           !< start of the time [s]
+    real(wp), intent(in) :: h                              !< its length [s]
+    integer :: i
+
+    way = 0.0_wp
+    do i = 1, size(self%model%problem%drives)
+      associate (drive => self%model%problem%drives(i)%drive)
+        way = max(way, abs(h)*drive%greatest_rate(from, h)/self%plan%unit_of(drive%coordinate))
+      end associate
+    end do
+  end function farthest_way
 
   !> Find the frictions at the present time.
   subroutine find_frictions(self, err)

@@ -5,6 +5,7 @@ module mech9_event_search
   use mech9_simulation_tolerances, only: round_off_of_gaps, shortest_step, least_motion
   use mech9_error, only: error_type
   use mech9_limit_watch, only: find_excess
+  use mech9_false_position, only: false_position_type, new_false_position
   use mech9_motion_view, only: link_motion_type
   use mech9_contact, only: contact_place_type
   use mech9_contact_motion, only: place_of_contact
@@ -32,35 +33,24 @@ contains
     real(wp), intent(inout) :: t                            !< a time behind it; then the time of the passing [s]
     logical, intent(out) :: passed                          !< the value there is above zero
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    real(wp) :: a, b, value_a, value_b, value
-    integer :: trial, side
+    type(false_position_type) :: search
+    real(wp) :: first, last, value
+    integer :: trial
+    logical :: found
 
-    a = from
-    b = t
-    call value_at(motion, what, i, b, value_b, err)
-    passed = value_b > 0.0_wp
+    call value_at(motion, what, i, t, last, err)
+    passed = last > 0.0_wp
     if (.not. passed .or. allocated(err)) return
-    call value_at(motion, what, i, a, value_a, err)
+    call value_at(motion, what, i, from, first, err)
     if (allocated(err)) return
-    t = a
-    side = 0
+    search = new_false_position(from, first, t, last)
+    t = from
     do trial = 1, most_trials
-      if (value_a >= 0.0_wp .or. abs(b - a) <= 4.0_wp*spacing(b)) exit
-      t = b - value_b*(b - a)/(value_b - value_a)
-      if (.not. (t - a)*(b - t) > 0.0_wp) exit
+      call search%next(t, found)
+      if (.not. found) return
       call value_at(motion, what, i, t, value, err)
       if (allocated(err) .or. abs(value) <= epsilon(value)) return
-      if (value > 0.0_wp) then
-        b = t
-        value_b = value
-        if (side > 0) value_a = 0.5_wp*value_a
-        side = 1
-      else
-        a = t
-        value_a = value
-        if (side < 0) value_b = 0.5_wp*value_b
-        side = -1
-      end if
+      call search%take(t, value)
     end do
   end subroutine locate
 

@@ -2,7 +2,6 @@
 !> ones come to a singular position.
 module mech9_free_simulation
   use mech9_kinds, only: wp
-  use mech9_number_lists, only: same_numbers
   use mech9_simulation_tolerances, only: doubtful_conditioning, refused_conditioning, regular_conditioning, longest_stick
   use mech9_error, only: error_type, raise, exit_singular, exit_integrator
   use mech9_simulation_failures, only: failure_lost_angles
@@ -12,7 +11,7 @@ module mech9_free_simulation
   use mech9_plan, only: plan_type, copy_plan
   use mech9_state, only: state_type, copy_state
   use mech9_block_equations, only: largest_gap
-  use mech9_requested, only: requested_by_results, add_forces, leave_out_unrequested, request_planned
+  use mech9_requested, only: requested_by_results, add_forces, add_section, leave_out_unrequested, request_planned
   use mech9_conditioning, only: conditioning_type
   use mech9_energy, only: kinetic_energy, potential_energy
   use mech9_integrator, only: integration_statistics_type
@@ -27,8 +26,8 @@ module mech9_free_simulation
   use mech9_variable_model, only: variable_model_type
   use mech9_sensitivity, only: sensitivity_type, new_given_sensitivity
   use mech9_varied_motion, only: varied_motion_type
-  use mech9_simulation, only: simulation_type, simulation_statistics_type, coordinate_change_type, standing_type, &
-    refuse_frictions, refuse_contacts
+  use mech9_simulation, only: simulation_type, simulation_statistics_type, standing_type, refuse_frictions, refuse_contacts
+  use mech9_coordinate_changes, only: add_change, same_replaced, same_independent
   implicit none
   private
   public :: free_simulation_type, new_free_simulation
@@ -45,6 +44,10 @@ module mech9_free_simulation
     procedure :: go_to
     procedure :: take_changes
     procedure :: stand_at_step
+    procedure :: stride
+    procedure :: end_of_stride
+    procedure :: leave_joint
+    procedure :: look_at
     procedure :: present
     procedure :: present_for_forces
     procedure :: begin_sensitivity
@@ -86,6 +89,7 @@ contains
     simulation%end = model%request%time%end
     allocate (simulation%coordinate_changes(0))
     simulation%requested = requested_by_results(model%mechanism, model%request%output, pictures)
+    call add_section(model%request%section, simulation%requested)
     call add_forces(model%mechanism, simulation%requested)
     call copy_plan(plan, used)
     call leave_out_unrequested(used, simulation%requested)
@@ -111,7 +115,7 @@ contains
     ! with other angles held, those of the data file may be singular; the coefficients do not depend on which is held
     if (all(simulation%motion%angles%held%rods%is_free)) &
       call keep_coefficients(model, given, assembled, simulation%coefficients, err)
-    if (.not. allocated(err)) call add_coordinate_change(simulation)
+    if (.not. allocated(err)) call add_change(simulation%motion, simulation%coordinate_changes)
   end subroutine new_free_simulation
 
   !> Begin to integrate. The position at the start is that of the system.
@@ -150,7 +154,8 @@ contains
     if (.not. at_start) call self%motion%pass_joint(self%events, self%impacts, err)
     if (allocated(err)) return
     call self%stall%forget()
-    if (self%motion%systems > before .and. .not. same_independent(self)) call add_coordinate_change(self)
+    if (self%motion%systems > before .and. .not. same_independent(self%motion, self%coordinate_changes)) &
+      call add_change(self%motion, self%coordinate_changes)
   end subroutine pass_event
 
   !> The motion at time t, by steps up to there or beyond.
@@ -223,6 +228,59 @@ contains
     if (.not. allocated(err)) call self%continue_angles(self%motion%t, err)
     if (.not. allocated(err)) call self%motion%show_angles(err)
   end subroutine stand_at_step
+
+  !> Make a step. It may go beyond the time.
+  subroutine stride(self, t, from, to, at_joint, err)
+    class(free_simulation_type), intent(inout) :: self   !< the simulation, started
+    real(wp), intent(in) :: t                            !< time to go towards [s]
+    real(wp), intent(out) :: from                        !< start of the step [s]
+    real(wp), intent(inout) :: to                        !< end of the step before; then of this one [s]
+    logical, intent(out) :: at_joint                     !< rates may jump at its end, or the equations of motion change
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
+
+    self%steps_onto = .false.
+    at_joint = .false.
+    do
+      from = self%motion%t
+      call self%stop_if_interrupted(t, err)
+      if (.not. allocated(err)) call self%step(t, err)
+      if (allocated(err)) return
+      if (abs(self%motion%t - from) > 0.0_wp) exit
+    end do
+    to = self%motion%t
+    at_joint = self%motion%system%interval%is_end(to)
+  end subroutine stride
+
+  !> The end of the last step [s].
+  pure real(wp) function end_of_stride(self, known)
+    class(free_simulation_type), intent(in) :: self   !< the simulation, started
+    real(wp), intent(in) :: known                     !< the end of the last stride [s]
+
+    end_of_stride = self%motion%t
+  end function end_of_stride
+
+  !> Pass what ended the last step, and stand behind it.
+  subroutine leave_joint(self, err)
+    class(free_simulation_type), intent(inout) :: self   !< the simulation, started
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
+
+    if (self%motion%system%interval%is_end(self%motion%t)) call pass_event(self, .false., err)
+    if (.not. allocated(err)) call self%stand_at_step(err)
+  end subroutine leave_joint
+
+  !> Stand at a time within the last step, before what ended it.
+  subroutine look_at(self, t, err)
+    class(free_simulation_type), intent(inout) :: self   !< the simulation, started
+    real(wp), intent(in) :: t                            !< the time [s]
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
+
+    if (abs(t - self%motion%t) > 0.0_wp) then
+      call self%go_to(t, err)
+    else
+      call self%stand_at_step(err)
+      if (allocated(self%motion%heat)) self%motion%system%state%heat = self%motion%heat
+    end if
+  end subroutine look_at
 
   !> Continue the angles of the data file to a time within the last step, over ways that are short enough, if others are
   !> integrated. The system stands at this time before and after.
@@ -351,7 +409,7 @@ contains
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
 
     call self%motion%change_coordinates(changed, err)
-    if (changed) call add_coordinate_change(self)
+    if (changed) call add_change(self%motion, self%coordinate_changes)
   end subroutine change_coordinates
 
   !> Go on with other angles in ball joints that are near gimbal lock; that is an event.
@@ -366,8 +424,10 @@ contains
       if (.not. allocated(err)) call motion%change_angles(changed, err)
       if (allocated(err)) return
     end associate
-    if (changed) changed = .not. (same_replaced(self) .and. same_independent(self))
-    if (changed) call add_coordinate_change(self)
+    associate (changes => self%coordinate_changes)
+      if (changed) changed = .not. (same_replaced(self%motion, changes) .and. same_independent(self%motion, changes))
+    end associate
+    if (changed) call add_change(self%motion, self%coordinate_changes)
   end subroutine change_angles
 
   !> Continue the angles of the data file to the end of the last step, if others are integrated.
@@ -381,70 +441,6 @@ contains
       call self%continue_angles(motion%t, err)
     end associate
   end subroutine continue_to_step
-
-  !> The coordinates of hinges whose angles are replaced. The angles of joints with several freedoms are the program's own matter.
-  function replaced_hinges(self) result(coordinates)
-    class(free_simulation_type), intent(in) :: self   !< the simulation
-    integer, allocatable :: coordinates(:)
-    logical, allocatable :: of_hinge(:)
-    integer :: i
-
-    coordinates = self%motion%angles%replaced_coordinates()
-    allocate (of_hinge(size(coordinates)))
-    do i = 1, size(coordinates)
-      of_hinge(i) = self%model%mechanism%structure%joint_of(coordinates(i)) == 0
-    end do
-    coordinates = pack(coordinates, of_hinge)
-  end function replaced_hinges
-
-  !> Whether the angles of the same hinges were replaced at the last event.
-  logical function same_replaced(self)
-    class(free_simulation_type), intent(in) :: self   !< the simulation
-    integer, allocatable :: now(:)
-
-    now = replaced_hinges(self)
-    same_replaced = size(now) == 0
-    if (size(self%coordinate_changes) == 0) return
-    same_replaced = same_numbers(now, self%coordinate_changes(size(self%coordinate_changes))%replaced)
-  end function same_replaced
-
-  !> Whether the same coordinates were independent at the last event, or at the start, beside the angles of joints with several freedoms.
-  logical function same_independent(self)
-    class(free_simulation_type), intent(in) :: self   !< the simulation
-    logical, dimension(self%motion%system%plan%n_coordinates) :: before, now
-    integer :: k
-
-    before = self%model%problem%partition%independent()
-    if (size(self%coordinate_changes) > 0) then
-      before = .false.
-      before(self%coordinate_changes(size(self%coordinate_changes))%independent) = .true.
-    end if
-    now = .false.
-    now(self%motion%system%plan%independent) = .true.
-    same_independent = .true.
-    do k = 1, size(now)
-      if (self%model%mechanism%structure%joint_of(k) == 0) same_independent = same_independent .and. (now(k) .eqv. before(k))
-    end do
-  end function same_independent
-
-  !> One more change: the present choice of coordinates. By hand: an array constructor of them would leak (gfortran 12).
-  subroutine add_coordinate_change(self)
-    class(free_simulation_type), intent(inout) :: self   !< the simulation
-    type(coordinate_change_type), allocatable :: grown(:)
-    integer :: i, n
-
-    n = size(self%coordinate_changes)
-    allocate (grown(n + 1))
-    do i = 1, n
-      grown(i)%t = self%coordinate_changes(i)%t
-      call move_alloc(self%coordinate_changes(i)%independent, grown(i)%independent)
-      call move_alloc(self%coordinate_changes(i)%replaced, grown(i)%replaced)
-    end do
-    grown(n + 1)%t = self%motion%t
-    grown(n + 1)%independent = self%motion%system%plan%independent
-    grown(n + 1)%replaced = replaced_hinges(self)
-    call move_alloc(grown, self%coordinate_changes)
-  end subroutine add_coordinate_change
 
   !> The plan in the present independent coordinates and the present state, in the angles of the data file.
   subroutine present(self, plan, state)

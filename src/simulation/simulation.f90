@@ -109,6 +109,11 @@ module mech9_simulation
     procedure :: advance
     procedure :: visit
     procedure :: stop_if_interrupted
+    procedure :: stride => stride_at_once
+    procedure :: end_of_stride => same_end
+    procedure :: leave_joint => leave_nothing
+    procedure :: look_at
+    procedure :: note_numbers
     procedure :: statistics
     procedure :: standing => standing_at_output
     procedure :: plans => no_other_plans
@@ -238,6 +243,55 @@ contains
     if (self%with_conditioning) call self%watch_conditioning(.true.)
     if (self%with_energies) call self%energies(self%kinetic_energy, self%potential_energy)
   end subroutine visit
+
+  !> Make a stride towards a time: the motion is then known from its start to its end, at any time between, and stands at the end.
+  !> This procedure, for simulations that do not say otherwise, goes to the time.
+  subroutine stride_at_once(self, t, from, to, at_joint, err)
+    class(simulation_type), intent(inout) :: self       !< the simulation, started
+    real(wp), intent(in) :: t                           !< time to go towards [s]
+    real(wp), intent(out) :: from                       !< start of the stride [s]
+    real(wp), intent(inout) :: to                       !< end of the stride before; then of this one, perhaps beyond t [s]
+    logical, intent(out) :: at_joint                    !< rates may jump at its end, or the equations of motion change
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+
+    at_joint = .false.
+    from = to
+    to = t
+    call self%go_to(t, err)
+  end subroutine stride_at_once
+
+  !> The end of the last stride, which may have been changed since then [s].
+  pure real(wp) function same_end(self, known)
+    class(simulation_type), intent(in) :: self   !< the simulation, started
+    real(wp), intent(in) :: known                !< the end of the last stride as it was [s]
+
+    same_end = known
+  end function same_end
+
+  !> Pass what ended the last stride, and stand behind it. Nothing ends one unless a simulation says so.
+  subroutine leave_nothing(self, err)
+    class(simulation_type), intent(inout) :: self       !< the simulation, started
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+
+  end subroutine leave_nothing
+
+  !> Stand at a time within the last stride, before what ended it.
+  subroutine look_at(self, t, err)
+    class(simulation_type), intent(inout) :: self       !< the simulation, started
+    real(wp), intent(in) :: t                           !< the time [s]
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+
+    call self%go_to(t, err)
+  end subroutine look_at
+
+  !> Note the closure, and what else is wanted at each time, of the present position, which is neither counted nor judged.
+  subroutine note_numbers(self)
+    class(simulation_type), intent(inout) :: self       !< the simulation
+
+    self%closure = self%present_closure()
+    if (self%with_conditioning) call self%watch_conditioning(.true.)
+    if (self%with_energies) call self%energies(self%kinetic_energy, self%potential_energy)
+  end subroutine note_numbers
 
   !> Judge and count the position that was reached.
   subroutine arrive(self, t, err)

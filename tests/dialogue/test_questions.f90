@@ -130,6 +130,8 @@ contains
       call draft%give('stop', 1, 'coordinate', '1')
       call draft%give('friction', 1, 'coordinate', '1')
       call draft%give('contact', 1, 'point', '''P''')
+      call draft%give('section', 1, 'coordinate', '1')
+      call draft%give('exponents', 1, 'transient', '10')
       if (drive /= 'user') call draft%give('motor', 1, 'law', ''''//drive//'''')
     end if
     ! drives and loads have the same laws of time

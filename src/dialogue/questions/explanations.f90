@@ -9,15 +9,14 @@ module mech9_explanations
   use mech9_pair_explanations, only: pair_texts
   use mech9_force_explanations, only: body_texts, load_texts, motor_texts, stop_texts, friction_texts, &
     contact_texts
-  use mech9_run_explanations, only: cam_texts, study_texts, run_texts
+  use mech9_run_explanations, only: cam_texts, study_texts, long_term_texts, run_texts
   implicit none
   private
   public :: find_explanation, explanations
 
   type(explanation_type), parameter :: explanations(*) = &
     [general_texts, pair_texts, coupling_texts, motion_texts, body_texts, load_texts, motor_texts, stop_texts, &
-     friction_texts, contact_texts, cam_texts, &
-     study_texts,      run_texts]
+     friction_texts, contact_texts, cam_texts, study_texts, long_term_texts, run_texts]
 
 contains
 

@@ -3,7 +3,7 @@ module mech9_run_explanations
   use mech9_name_explanation, only: explanation_type
   implicit none
   private
-  public :: cam_texts, study_texts, run_texts
+  public :: cam_texts, study_texts, long_term_texts, run_texts
 
   type(explanation_type), parameter :: cam_texts(*) = [ &
     explanation_type('cam', 'link', '', &
@@ -133,6 +133,35 @@ module mech9_run_explanations
     explanation_type('optimum', 'method', '', &
                   'The method of Levenberg and Marquardt is for sums of squares without limits; the others come from the '// &
                   'library NLopt.', 'auto')]
+
+  type(explanation_type), parameter :: long_term_texts(*) = [ &
+    explanation_type('section', 'coordinate', '', &
+                  'The section has a point whenever the coordinate with this number passes a value. Leave it out where a '// &
+                  'column or a period gives the points.', '2'), &
+    explanation_type('section', 'column', '', &
+                  'In place of a coordinate, a column of the results may pass the value. Name it by its heading.', 'P.vy'), &
+    explanation_type('section', 'period', '', &
+                  'In place of a value, the motion may have a point after each period, such as that of a drive.', &
+                  '9.42477796076938'), &
+    explanation_type('section', 'value', '', &
+                  'The coordinate or the column passes this value at each point.', '0'), &
+    explanation_type('section', 'direction', '', &
+                  'With 1 the points are those at which the value grows with time, with -1 those at which it falls, with 0 '// &
+                  'both.', '-1'), &
+    explanation_type('section', 'every_turn', '', &
+                  'A coordinate that goes on turning passes the same place once in each turn. With .true. each of them counts.', &
+                  '.true.'), &
+    explanation_type('section', 'transient', '', &
+                  'Points before this time, counted from the start of the motion, are left out.', '100'), &
+    explanation_type('section', 'table', '', &
+                  'The points are written into this file, with the columns of the results.', 'section.dat'), &
+    explanation_type('section', 'reduce_angles', '', &
+                  'With .true. plots of the section show all angles within one turn. Tables keep the turns.', '.true.'), &
+    explanation_type('exponents', 'transient', '', &
+                  'Before this time, counted from the start of the motion, nothing is summed. The motion comes to its '// &
+                  'long-term behaviour meanwhile.', '100'), &
+    explanation_type('exponents', 'time', '', &
+                  'The exponents are means over this time. Errors fall with its square root.', '1000')]
 
   type(explanation_type), parameter :: run_texts(*) = [ &
     explanation_type('time', 'start', '', &

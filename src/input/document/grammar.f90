@@ -7,7 +7,7 @@ module mech9_grammar
   use mech9_text, only: lower
   use mech9_grammar_rows, only: group_row_type, item_row_type, unlimited, for_forces, needed, optional, any_law, &
     variable_of_law, variable_of_motor
-  use mech9_study_grammar, only: study_items, link_items
+  use mech9_study_grammar, only: study_items, link_items, long_term_items
   use mech9_output_grammar, only: output_items
   implicit none
   private
@@ -58,6 +58,8 @@ module mech9_grammar
                    'a condition that the designs of --optimize must meet'), &
     group_row_type('optimum', .false., '', both, &
                    'the search of --optimize for the values of the parameters that meet the objectives best'), &
+    group_row_type('section', .false., '', both, 'points of the motion at values of a coordinate or a column, or after periods'), &
+    group_row_type('exponents', .false., '', dynamics, 'the times over which the option --exponents takes Lyapunov exponents'), &
     group_row_type('time', .false., '', both, &
                    'the times of the results: start + (end - start) i/intervals, i = 0 .. intervals'), &
     group_row_type('solver', .false., '', dynamics, 'method and tolerances of the integration'), &
@@ -501,7 +503,7 @@ module mech9_grammar
 
   type(item_row_type), parameter :: item_table(*) = &
     [general_items, pair_items, link_items, coupling_items, motion_items, body_items, load_items, motor_items, stop_items, &
-     friction_items, contact_items, cam_items, study_items, run_items, output_items]
+     friction_items, contact_items, cam_items, study_items, long_term_items, run_items, output_items]
 
 contains
 

@@ -1,10 +1,10 @@
-!> The names of the groups for parameters, quantities, studies and objectives, and for the names of links.
+!> The names of the groups for parameters, quantities, studies, objectives and the long-term motion, and for the names of links.
 module mech9_study_grammar
   use mech9_program_kind, only: kinematics
   use mech9_grammar_rows, only: item_row_type, unlimited, needed, optional
   implicit none
   private
-  public :: study_items, link_items
+  public :: study_items, link_items, long_term_items
 
   type(item_row_type), parameter :: link_items(*) = [ &
     item_row_type('link', 'number', 'integer', 1, 1, '', needed, '', '>=1', '', '', &
@@ -122,4 +122,30 @@ module mech9_study_grammar
                   'auto levenberg-marquardt slsqp mma ccsaq auglag', '', &
                   'method of the search: by default Levenberg and Marquardt''s for sums of squares, otherwise slsqp', &
                   '''slsqp''', seldom=.true.)]
+
+  type(item_row_type), parameter :: long_term_items(*) = [ &
+    item_row_type('section', 'coordinate', 'integer', 1, 1, '', optional, '(no coordinate)', '>=1', '', '', &
+                  'number of the coordinate that has the value at each point', '2'), &
+    item_row_type('section', 'column', 'text', 1, 1, '', optional, '(no column)', '', '', '', &
+                  'in place of a coordinate: heading of a column of the results that has the value', '''P.vy''', seldom=.true.), &
+    item_row_type('section', 'period', 'real', 1, 1, 's', optional, '(no period)', '>0', '', '', &
+                  'in place of a value: a point after each such time, the first one at the start', '9.42477796076938', &
+                  seldom=.true.), &
+    item_row_type('section', 'value', 'real', 1, 1, 'q', optional, '0', '', '', '', &
+                  'the value at the points; of a column, in the unit of its heading', '0'), &
+    item_row_type('section', 'direction', 'integer', 1, 1, '', optional, '1', '', '', '', &
+                  '1: points at which the value grows with time, -1: at which it falls, 0: both', '-1'), &
+    item_row_type('section', 'every_turn', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
+                  'of a coordinate that turns: also at values that differ by whole turns', '.true.', seldom=.true.), &
+    item_row_type('section', 'transient', 'real', 1, 1, 's', optional, '0', '>=0', '', '', &
+                  'time from the start before which no point counts', '100'), &
+    item_row_type('section', 'table', 'text', 1, 1, '', optional, '''''', '', '', '', &
+                  'file for the table of the points; - is standard output', '''section.dat'''), &
+    item_row_type('section', 'reduce_angles', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
+                  'plots of the section show angles within one turn, from minus half a turn to half a turn', '.true.', &
+                  seldom=.true.), &
+    item_row_type('exponents', 'transient', 'real', 1, 1, 's', optional, '0', '>=0', '', '', &
+                  'time from the start of the motion before which nothing is summed', '100'), &
+    item_row_type('exponents', 'time', 'real', 1, 1, 's', optional, '(up to the end)', '>0', '', '', &
+                  'time over which the exponents are means', '1000')]
 end module mech9_study_grammar

@@ -2,13 +2,15 @@
 module mech9_requested
   use mech9_kinds, only: wp
   use mech9_request, only: output_settings_type
+  use mech9_long_term, only: section_type
   use mech9_mechanism, only: mechanism_type
   use mech9_turning_plane, only: turning_plane_type
   use mech9_link_way, only: link_way_type, find_ways
   use mech9_plan, only: plan_type, block_type
   implicit none
   private
-  public :: requested_type, requested_by_results, add_forces, add_stops, requested_blocks, leave_out_unrequested, request_planned
+  public :: requested_type, requested_by_results, add_forces, add_stops, add_section, requested_blocks, leave_out_unrequested, &
+    request_planned
 
   !> The requested part of the motion.
   type :: requested_type
@@ -97,6 +99,16 @@ contains
       requested%derivatives = max(1, requested%derivatives)
     end do
   end subroutine add_stops
+
+  !> Request the coordinate of a section, with its rate and acceleration.
+  pure subroutine add_section(section, requested)
+    type(section_type), intent(in) :: section          !< the section
+    type(requested_type), intent(inout) :: requested   !< the requested coordinates and links
+
+    if (section%coordinate == 0) return
+    requested%coordinates(section%coordinate) = .true.
+    requested%derivatives = 2
+  end subroutine add_section
 
   !> The blocks on which a requested coordinate or link depends.
   pure function requested_blocks(plan, requested) result(needed)

@@ -1,10 +1,11 @@
-!> The request: the times of the results, their accuracy, where they go, the quantities that are taken of them, and the cams whose
-!> profiles are computed.
+!> The request: the times of the results, their accuracy, where they go, the quantities that are taken of them, the cams whose
+!> profiles are computed, and what is asked about the long-term motion.
 module mech9_request
   use mech9_kinds, only: wp
   use mech9_error, only: place_type
   use mech9_quantity, only: quantity_type
   use mech9_study, only: study_type
+  use mech9_long_term, only: section_type, exponents_type
   use mech9_objective, only: objective_type, limit_type, optimum_type
   implicit none
   private
@@ -90,6 +91,8 @@ module mech9_request
     type(limit_type), allocatable :: limits(:)          !< in the order of the data file; for --optimize
     type(optimum_type) :: optimum
     type(cam_request_type), allocatable :: cams(:)   !< in the order of the data file
+    type(section_type) :: section
+    type(exponents_type) :: exponents
   end type request_type
 
 contains

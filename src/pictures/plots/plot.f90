@@ -59,6 +59,7 @@ contains
     self%table = table
     self%said = ''
     self%data = new_plot_data(heading%names, heading%units, self%request%curves, expected)
+    self%data%are_points = self%request%of_section
     self%is_open = .true.
   end subroutine open_plot
 

@@ -17,6 +17,7 @@ module mech9_plot_data
     integer :: count = 0                                   !< number of rows kept
     integer :: stride = 1                                  !< one of so many rows is kept
     integer :: seen = 0                                    !< number of rows taken
+    logical :: are_points = .false.                        !< rows are points that no line joins
   contains
     procedure :: take
     procedure :: place_of

@@ -1,17 +1,18 @@
 !> The request for a plot: the argument of --plot, read against the columns of the results.
 !>
-!>     [TARGET:]NAME,NAME:NAME,NAME,...
+!>     [TARGET:][section:]NAME,NAME:NAME,NAME,...
 !>
 !> Of a pair of names the second is drawn over the first, and so are the single names behind it, up to the next pair. Single names
 !> before all pairs are drawn over time. TARGET is the file of the picture (.svg, .png or .pdf), or `term` for the terminal.
-!> Without names the coordinates are drawn.
+!> Without names the coordinates are drawn. With `section`, names are columns of the section, and single names are drawn over the number
+!> of the point.
 module mech9_plot_request
   use mech9_error, only: error_type, raise, exit_usage
   use mech9_text, only: string_type, nearest_name
   use mech9_path, only: ending_of
   implicit none
   private
-  public :: plot_request_type, curve_type, read_plot_request, target_of_plot, is_picture, take_target, take_name
+  public :: plot_request_type, curve_type, read_plot_request, target_of_plot, is_picture, is_of_section, take_target, take_name
 
   !> One curve: the numbers of its two columns.
   type :: curve_type
@@ -21,6 +22,7 @@ module mech9_plot_request
   type :: plot_request_type
     character(len=:), allocatable :: target     !< file of the picture; empty: to be chosen
     logical :: in_terminal = .false.
+    logical :: of_section = .false.             !< points of the section are drawn in place of the motion
     type(curve_type), allocatable :: curves(:)
   end type plot_request_type
 
@@ -31,6 +33,8 @@ module mech9_plot_request
   !> The number of letters of a name that are compared when the nearest name is looked for.
   integer, parameter :: longest_name = 64
   character(len=*), parameter :: terminal = 'term'
+  !> The word for points of the section.
+  character(len=*), parameter :: section = 'section'
 
 contains
 
@@ -44,6 +48,8 @@ contains
     integer :: at
 
     call take_target(text, request, at)
+    request%of_section = is_of_section(text)
+    if (request%of_section) at = at + len(section) + 1
     allocate (request%curves(0))
     if (at > len(text)) then
       call take_coordinates(names, request)
@@ -61,6 +67,17 @@ contains
       at = at + 1
     end do
   end subroutine read_plot_request
+
+  !> Whether a request is for the points of the section.
+  pure logical function is_of_section(text)
+    character(len=*), intent(in) :: text               !< the argument of --plot
+    type(plot_request_type) :: request
+    integer :: at
+
+    call take_target(text, request, at)
+    is_of_section = text(min(at, len(text) + 1):) == section
+    if (len(text) >= at + len(section)) is_of_section = is_of_section .or. text(at:at + len(section)) == section//':'
+  end function is_of_section
 
   !> Find the place where a plot is to be drawn: the file of a picture, '-' for the terminal, or empty if nothing is
   !> said.

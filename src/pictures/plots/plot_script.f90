@@ -24,6 +24,9 @@ module mech9_plot_script
   integer, parameter :: few_rows = 30
   !> Room that a letter of the label of an upward axis takes [px].
   real(wp), parameter :: label_letter = 9.0_wp
+  !> Points of a section are larger if there are at most this many.
+  integer, parameter :: few_points = 300
+  character(len=*), parameter :: large_dots = 'points pointtype 7 pointsize 0.5', small_dots = 'points pointtype 7 pointsize 0.2'
 
 contains
 
@@ -95,7 +98,8 @@ contains
       own = pack(curves, panels == i)
       ! a dumb terminal cannot turn the label of the upward axis, so that it stands above the panel
       text = text//'set title '//quoted(axis_label(own%y, data%names, data%units))//line_end// &
-             terminal_axes(own, data)//curve_commands(own, data, data_block, with='lines')//line_end
+             terminal_axes(own, data)//curve_commands(own, data, data_block, &
+                                                      with=trim(merge('points', 'lines ', data%are_points)))//line_end
     end do
   end function terminal_script
 
@@ -137,8 +141,12 @@ contains
     ! panels over time share the axis of the last one
     if (i < size(layout%left) .and. over_time(curves(1))) &
       text = text//'unset xlabel'//line_end//'set format x '''''//line_end
-    text = text//curve_commands(curves, data, source, &
-                                with=trim(merge('linespoints', 'lines      ', data%count <= few_rows)))
+    if (data%are_points) then
+      text = text//curve_commands(curves, data, source, with=trim(merge(large_dots, small_dots, data%count <= few_points)))
+    else
+      text = text//curve_commands(curves, data, source, &
+                                  with=trim(merge('linespoints', 'lines      ', data%count <= few_rows)))
+    end if
   end function panel
 
   !> The commands for labels, ranges and marks.

@@ -11,6 +11,7 @@ module mech9_results
   use mech9_table, only: table_type
   use mech9_motion_event, only: motion_events_type
   use mech9_plot, only: plot_type, picture_of_plot
+  use mech9_plot_request, only: is_of_section
   use mech9_hdf5_sink, only: hdf5_sink_type
   use mech9_facts, only: facts_type
   use mech9_fact_layout, only: put_diagnostics
@@ -96,6 +97,7 @@ contains
     heading = heading_of(model%mechanism%title, columns)
     if (options%has('names')) call heading%call_by_names(model%mechanism%names)
     do i = 1, size(requests)
+      if (is_of_section(requests(i)%text)) cycle
       call picture_of_plot(requests(i)%text, self%table_path, options%file, i, picture)
       allocate (plot)
       call number_columns(model%mechanism%names, requests(i)%text)

@@ -2,6 +2,7 @@
 module mech9_written_files
   use mech9_text, only: string_type
   use mech9_request, only: output_settings_type
+  use mech9_long_term, only: section_type
   use mech9_replacement, only: path_of_part
   use mech9_plot, only: picture_of_plot
   use mech9_plot_drawing, only: script_of_plot
@@ -76,14 +77,17 @@ contains
   end subroutine choose
 
   !> List the files. Without `output` the data file could not be read, and only a report is written.
-  pure subroutine list_written_files(options, files, output)
+  pure subroutine list_written_files(options, files, output, section)
     type(command_line_type), intent(in) :: options                  !< the command line
     type(written_file_type), allocatable, intent(out) :: files(:)   !< all files that are going to be written
     type(output_settings_type), intent(in), optional :: output      !< the group &output of the data file
+    type(section_type), intent(in), optional :: section             !< the group &section of the data file
 
     allocate (files(0))
     if (present(output) .and. options%answer() == '') then
       call list_results(options, output, files)
+      if (present(section) .and. .not. any([options%has('study'), options%has('optimize'), options%has('no-write')])) &
+        call append(files, '&section table', section%table)
     else if (present(output)) then
       call list_answers(options, files)
     end if
@@ -154,7 +158,7 @@ contains
     if (options%has('structure')) return
     call options%arguments('dakota', paths)
     if (size(paths) == 2) call append(files, 'the results of --dakota', paths(2)%text)
-    if (options%has('equilibrium') .or. options%has('modes') .or. options%has('linear')) then
+    if (options%has('equilibrium') .or. options%has('modes') .or. options%has('linear') .or. options%has('exponents')) then
       call list_of_equilibrium(options, files)
       return
     end if

@@ -10,7 +10,7 @@ module test_draft_needs
   use mech9_name_explanation, only: explanation_type
   use mech9_outline, only: outline_type, new_outline
   use mech9_pair_explanations, only: pair_texts
-  use mech9_run_explanations, only: cam_texts, study_texts, run_texts
+  use mech9_run_explanations, only: cam_texts, study_texts, long_term_texts, run_texts
   use mech9_seldom, only: is_seldom, is_used, seldom_rows
   use mech9_study_needs, only: is_for_study
   use mech9_testing, only: tester_type
@@ -86,7 +86,8 @@ contains
 
     call tester%is_true(size(general_texts) + size(coupling_texts) + size(motion_texts) + size(pair_texts) + size(body_texts) + &
                         size(load_texts) + size(motor_texts) + size(stop_texts) + &
-                        size(friction_texts) + size(contact_texts) + size(cam_texts) + size(study_texts) + size(run_texts) == &
+                        size(friction_texts) + size(contact_texts) + size(cam_texts) + size(study_texts) + &
+                        size(long_term_texts) + size(run_texts) == &
                         size(explanations), 'the parts are the whole')
     call tester%is_true(all(pair_texts%group == 'pair') .and. all(coupling_texts%group == 'coupling') .and. &
                         all(cam_texts%group == 'cam') .and. all(motor_texts%group == 'motor') .and. &
@@ -95,6 +96,7 @@ contains
     call judge(motion_texts)
     call judge(body_texts)
     call judge(study_texts)
+    call judge(long_term_texts)
     call judge(run_texts)
   contains
     !> The groups of a part are in the grammar, and its texts are not cut.

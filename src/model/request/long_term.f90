@@ -1,0 +1,30 @@
+!> Requests that concern the long-term motion: a section, and Lyapunov exponents.
+module mech9_long_term
+  use mech9_kinds, only: wp
+  use mech9_error, only: place_type
+  implicit none
+  private
+  public :: section_type, exponents_type
+
+  !> The points of a motion at which a coordinate or a column of the results has a value, or at the ends of periods.
+  type :: section_type
+    logical :: is_wanted = .false.             !< there is a group &section
+    integer :: coordinate = 0                  !< number of the coordinate; 0: none
+    character(len=:), allocatable :: column    !< heading of the column of the results; empty: none
+    real(wp) :: period = 0.0_wp                !< time between two points; 0: a value gives the points [s]
+    real(wp) :: value = 0.0_wp                 !< the value there, in the unit of the results
+    integer :: direction = 1                   !< 1: met while it grows, -1: while it falls, 0: both
+    logical :: every_turn = .false.            !< a value that differs by whole turns counts, too
+    real(wp) :: transient = 0.0_wp             !< time from the start in which no point counts [s]
+    character(len=:), allocatable :: table     !< name of the table's file; empty: none
+    logical :: reduce_angles = .false.         !< pictures show angles within one turn
+    type(place_type) :: place                  !< of its group in the data file
+  end type section_type
+
+  !> How Lyapunov exponents are found.
+  type :: exponents_type
+    real(wp) :: transient = 0.0_wp             !< time from the start before which nothing is summed [s]
+    real(wp) :: time = 0.0_wp                  !< time over which is summed; 0: up to the end of the results [s]
+    type(place_type) :: place                  !< of its group in the data file
+  end type exponents_type
+end module mech9_long_term
