@@ -170,6 +170,10 @@ int mech9_modes(const mech9_mechanism *mechanism, mech9_results **results, mech9
 int mech9_assemblies(const mech9_mechanism *mechanism, int starts, const volatile int *stop, mech9_results **results,
                      mech9_error *error);
 int mech9_range(const mech9_mechanism *mechanism, const volatile int *stop, mech9_results **results, mech9_error *error);
+/* Lyapunov exponents, as many as are asked for: the numbers L1, L2, ... and their standard errors L1.error, ...; a row for each time of
+   the running means. */
+int mech9_exponents(const mech9_mechanism *mechanism, int count, const volatile int *stop, mech9_results **results,
+                    mech9_error *error);
 /* The profile of a cam, from 1 in the order of its groups: a row for each output, and its entry in a report as text. */
 int mech9_cam(const mech9_mechanism *mechanism, int number, mech9_results **results, mech9_error *error);
 int mech9_study(const mech9_mechanism *mechanism, int with_forces, int threads, const volatile int *stop,

@@ -13,13 +13,13 @@ from ._errors import (AssemblyError, DataError, Error, FileError, Finding, Integ
                       UsageError)
 from ._function import Function
 from ._library import version as _version
-from ._mechanism import Check, Linear, Mechanism, Optimum, Positions, import_robot, read, read_text
+from ._mechanism import Check, Mechanism, Optimum, Positions, import_robot, read, read_text
 from ._pictures import Picture
 from ._procedures import Loads, Motion
-from ._results import Gradients, Matrix, Results
+from ._results import Exponents, Gradients, Linear, Matrix, Results, Section
 from ._simulation import Simulation, Simulations
 
-__all__ = ['read', 'read_text', 'import_robot', 'Mechanism', 'Results', 'Gradients', 'Positions', 'Check', 'Linear', 'Optimum', 'Matrix', 'Picture', 'Function',
+__all__ = ['read', 'read_text', 'import_robot', 'Mechanism', 'Results', 'Section', 'Gradients', 'Positions', 'Check', 'Linear', 'Exponents', 'Optimum', 'Matrix', 'Picture', 'Function',
            'Simulation', 'Simulations', 'Motion', 'Loads', 'Error', 'Finding',
            'UsageError', 'DataError', 'StructureError', 'AssemblyError', 'SingularError', 'IntegrationError', 'FileError']
 __version__ = _version()

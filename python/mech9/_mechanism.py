@@ -17,7 +17,7 @@ from ._library import Handle, call, call_stoppable, count, lib, warn_of_raised
 from ._library import text as text_of
 from ._pictures import Picture, drawn
 from ._procedures import Procedure, Progress
-from ._results import Results
+from ._results import Exponents, Linear, Results, SecondOrder, StateSpace
 from ._words import group, run_setting, written
 
 if TYPE_CHECKING:
@@ -84,38 +84,6 @@ class Check:
 
     def __str__(self) -> str:
         return self.text
-
-
-@dataclass(frozen=True)
-class SecondOrder:
-    """M x'' + C x' + K x = u over the free coordinates, in SI units."""
-    M: np.ndarray
-    C: np.ndarray
-    K: np.ndarray
-
-
-@dataclass(frozen=True)
-class StateSpace:
-    """x' = A x + B u, y = C x + D u; states, inputs and outputs are names, with units."""
-    A: np.ndarray
-    B: np.ndarray
-    C: np.ndarray
-    D: np.ndarray
-    states: tuple[str, ...]
-    state_units: tuple[str, ...]
-    inputs: tuple[str, ...]
-    input_units: tuple[str, ...]
-    outputs: tuple[str, ...]
-    output_units: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class Linear:
-    """The linearised equations of motion about an equilibrium q, where `free` names the free coordinates."""
-    q: np.ndarray
-    free: tuple[str, ...]
-    second_order: SecondOrder
-    state_space: StateSpace
 
 
 class Optimum:
@@ -391,6 +359,18 @@ class Mechanism:
     def range(self) -> Results:
         """How far each independent coordinate can go while the others are held: coordinate, lower, upper; infinite where nothing stops it."""
         return self._results(lib.range, lambda m, stop, out: (m, stop, out))
+
+    def exponents(self, how_many: int = 1, **words: Any) -> Exponents:
+        """The largest Lyapunov exponents of the motion under forces. It takes the words of &exponents, as transient=100 and time=1000; they
+        hold for this call alone."""
+        moved = self
+        if words:
+            moved = self.copy()
+            for word, value in words.items():
+                call(lib.mechanism_apply, moved._handle, text_of(f'exponents.{word}={written(value)}'))
+        found = moved._results(lib.exponents, lambda m, stop, out: (m, count(how_many, 'how_many', 1), stop, out))
+        numbers = np.array(list(found.quantities.values()))
+        return Exponents(numbers[:how_many], numbers[how_many:], found.t, found.table[:, 1:])
 
     def cam(self, number: int = 1) -> Results:
         """The profile of a cam, of which &cam describes the follower: the columns of --cam, and its entry of a report as `report`."""

@@ -58,6 +58,8 @@ def _matrix(handle: int, i: int) -> Matrix:
     values.flags.writeable = False
 
     def texts(function: Any, count: int) -> tuple[str, ...]:
+        if count and function(handle, i, 0) is None:
+            return ()   # points of a section have no names
         return tuple(function(handle, i, k).decode() for k in range(count))
     return Matrix(values, texts(lib.results_matrix_row_name, n), texts(lib.results_matrix_row_unit, n),
                   texts(lib.results_matrix_column_name, m), texts(lib.results_matrix_column_unit, m))
@@ -103,6 +105,13 @@ class Results(Mapping[str, np.ndarray]):
         `pairs`, too: `pair`, `force` [N s] and `moment` [N m s] of each.
         """
         return list(self.report.get('events', []))
+
+    @property
+    def section(self) -> Section:
+        """The points of the section of a run, where the mechanism has a group &section."""
+        if 'section' not in self.matrices:
+            raise UsageError("the run has no section; m.add('section', coordinate=1) requests one", 2)
+        return Section(self.matrices['section'])
 
     @property
     def coordinate_changes(self) -> list[dict[str, Any]]:
@@ -226,6 +235,100 @@ class Results(Mapping[str, np.ndarray]):
 
     def __repr__(self) -> str:
         return f'<mech9.Results: {len(self.table)} rows of {", ".join(self.names[:8])}{"" if len(self.names) <= 8 else " and others"}>'
+
+
+class Section(Mapping[str, np.ndarray]):
+    """The points of a section: `point`, `t` and the columns of the run, by their names.
+
+    names, units: of the columns. table: (points, columns), read-only.
+    """
+
+    def __init__(self, matrix: Matrix):
+        self.names: tuple[str, ...] = matrix.columns
+        self.units: dict[str, str] = dict(zip(matrix.columns, matrix.column_units))
+        self.table: np.ndarray = matrix.values
+        self._columns = {name: i for i, name in enumerate(self.names)}
+
+    @property
+    def t(self) -> np.ndarray:
+        """The times of the points [s]."""
+        return self['t']
+
+    def plot(self, x: str, y: str, reduce_angles: bool = False) -> Any:
+        """The points in two columns: a matplotlib Figure. With reduce_angles, angles are shown within one turn."""
+        from matplotlib.figure import Figure
+        figure = Figure()
+        axes = figure.add_subplot()
+        axes.plot(*(self._drawn(name, reduce_angles) for name in (x, y)), linestyle='none', marker='.',
+                  markersize=4 if len(self.table) <= 300 else 1)
+        axes.set_xlabel(f'{x} [{self.units[x]}]')
+        axes.set_ylabel(f'{y} [{self.units[y]}]')
+        return figure
+
+    def _drawn(self, name: str, reduce_angles: bool) -> np.ndarray:
+        """A column as it is drawn."""
+        turn = {'rad': 2 * np.pi, 'deg': 360.0}.get(self.units[name])
+        return self[name] - turn * np.rint(self[name] / turn) if reduce_angles and turn else self[name]
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """A column (points,), read-only."""
+        try:
+            return self.table[:, self._columns[name]]
+        except KeyError:
+            raise KeyError(f'the section has no column {name!r}; its columns are {", ".join(self.names)}') from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.names)
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def __repr__(self) -> str:
+        return f'<mech9.Section: {len(self.table)} points of {", ".join(self.names[:8])}{"" if len(self.names) <= 8 else " and others"}>'
+
+    __eq__ = object.__eq__   # arrays have no single answer
+    __hash__ = object.__hash__
+
+
+@dataclass(frozen=True)
+class SecondOrder:
+    """M x'' + C x' + K x = u over the free coordinates, in SI units."""
+    M: np.ndarray
+    C: np.ndarray
+    K: np.ndarray
+
+
+@dataclass(frozen=True)
+class StateSpace:
+    """x' = A x + B u, y = C x + D u; states, inputs and outputs are names, with units."""
+    A: np.ndarray
+    B: np.ndarray
+    C: np.ndarray
+    D: np.ndarray
+    states: tuple[str, ...]
+    state_units: tuple[str, ...]
+    inputs: tuple[str, ...]
+    input_units: tuple[str, ...]
+    outputs: tuple[str, ...]
+    output_units: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Linear:
+    """The linearised equations of motion about an equilibrium q, where `free` names the free coordinates."""
+    q: np.ndarray
+    free: tuple[str, ...]
+    second_order: SecondOrder
+    state_space: StateSpace
+
+
+@dataclass(frozen=True)
+class Exponents:
+    """The Lyapunov exponents [1/s], largest first, with their standard errors; the means over the times up to t, `history` (times, exponents)."""
+    values: np.ndarray
+    errors: np.ndarray
+    t: np.ndarray
+    history: np.ndarray
 
 
 class Gradients(Mapping[str, Mapping[str, float]]):

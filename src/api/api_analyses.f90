@@ -2,7 +2,8 @@
 module mech9_api_analyses
   use, intrinsic :: iso_c_binding, only: c_int, c_ptr, c_null_ptr
   use mech9, only: wp, error_type, finding_type, mechanism_type, run_type, rest_type, study_type, optimum_type, &
-    linear_system_type, judge_mobility, list_assemblies, list_ranges, name_coordinates, find_linear_system, find_cam, draw_sketch, &
+    linear_system_type, exponents_found_type, find_motion_exponents, &
+    judge_mobility, list_assemblies, list_ranges, name_coordinates, find_linear_system, find_cam, draw_sketch, &
     draw_film, exit_file, exit_data, exit_structure, exit_interrupted, kinematics, dynamics
   use mech9_api_text, only: c_text_type, read_c_text
   use mech9_api_error, only: begin_call, end_call
@@ -124,7 +125,64 @@ contains
     call put_texts(names, found%number_names)
     call put_texts(units, found%number_units)
     call run%gradients(found%derivatives)
+    call take_section(run, found)
   end subroutine take_run
+
+  !> Take the points of the section of a run as a matrix, with the units of its columns. Its rows have no names.
+  subroutine take_section(run, found)
+    type(run_type), intent(inout) :: run                   !< the run
+    type(results_type), intent(inout) :: found             !< gets them
+    character(len=:), allocatable :: names(:), units(:)
+    character(len=1), allocatable :: nameless(:)
+    real(wp), allocatable :: points(:, :)
+
+    call run%section(names, points, units)
+    if (size(names) == 0) return
+    allocate (found%matrices(1), nameless(0))
+    call put_matrix('section', transpose(points), nameless, nameless, names, units, found%matrices(1))
+  end subroutine take_section
+
+  !> Find the first Lyapunov exponents of a motion under forces.
+  integer(c_int) function find_exponents(mechanism, count, stop, results, error) bind(c, name='mech9_exponents') result(code)
+    type(c_ptr), value, intent(in) :: mechanism   !< the mechanism
+    integer(c_int), value, intent(in) :: count    !< how many exponents are found
+    type(c_ptr), value, intent(in) :: stop        !< address of a number that stops the motion once it is not 0, or null
+    type(c_ptr), intent(out) :: results           !< a row for each time of the running means, the exponents; null after a failure
+    type(c_ptr), value, intent(in) :: error       !< handle of errors, or null
+    type(mechanism_type), pointer :: moved
+    type(exponents_found_type) :: exponents
+    type(results_type), pointer :: found
+    type(flag_interruption_type) :: interruption
+    type(error_type), allocatable :: err
+    character(len=16), allocatable :: names(:)
+    integer :: k, n
+
+    call begin_call(error)
+    results = c_null_ptr
+    call new_interruption(stop, interruption)
+    call find_mechanism(mechanism, moved, err)
+    if (.not. allocated(err)) call find_motion_exponents(moved, int(count), exponents, err, interruption)
+    if (.not. allocated(err)) then
+      allocate (found)
+      n = size(exponents%exponents)
+      allocate (names(2*n))
+      do k = 1, n
+        write (names(k), '(a,i0)') 'L', k
+        names(n + k) = trim(names(k))//'.error'
+      end do
+      call put_texts(names, found%number_names)
+      call put_texts([('1/s', k=1, 2*n)], found%number_units)
+      found%numbers = [exponents%exponents, exponents%errors]
+      call put_texts(['t               ', names(:n)], found%names)
+      call put_texts(['s  ', ('1/s', k=1, n)], found%units)
+      found%count = size(exponents%times)
+      allocate (found%rows(n + 1, found%count))
+      found%rows(1, :) = exponents%times
+      found%rows(2:, :) = exponents%history
+      results = show_results(found)
+    end if
+    code = end_analysis(error, err, moved, dynamics)
+  end function find_exponents
 
   !> Find the equilibrium to which the start leads, or those of many random starts.
   integer(c_int) function find_equilibria(mechanism, starts, stop, results, error) bind(c, name='mech9_equilibrium') result(code)

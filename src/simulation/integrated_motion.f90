@@ -518,11 +518,12 @@ contains
   end subroutine note_start
 
   !> Go on from a state as if nothing had been before it.
-  subroutine restart(self, t, y, err)
+  subroutine restart(self, t, y, err, first_step)
     class(integrated_motion_type), intent(inout) :: self   !< the motion
     real(wp), intent(in) :: t                              !< time [s]
     real(wp), intent(in) :: y(:)                           !< projected values
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    real(wp), intent(in), optional :: first_step           !< with its sign; absent or 0: to be found [s]
     type(expectation_type) :: nothing
 
     self%t = t
@@ -530,7 +531,7 @@ contains
     call self%system%resume(nothing)
     call self%system%move_to(self%t, self%y, err)
     if (.not. allocated(err)) call self%system%pass_limits(err)
-    if (.not. allocated(err)) call self%integrator%restart(self%t, self%y, err)
+    if (.not. allocated(err)) call self%integrator%restart(self%t, self%y, err, first_step)
     if (allocated(err)) return
     self%conditioning_here = self%system%conditioning()
     call self%dense_output%begin()

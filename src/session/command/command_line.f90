@@ -386,7 +386,7 @@ contains
     name = rest_of(self%given%name)
   end function rest
 
-  !> The table of an equilibrium or of modes: the file that is named, or standard output where no other result is
+  !> The table of an equilibrium, of modes or of exponents: the file that is named, or standard output where no other result is
   !> requested. It is empty for none.
   pure function table_of_answer(self) result(path)
     class(command_line_type), intent(in) :: self  !< the command line
@@ -395,7 +395,7 @@ contains
     path = self%argument('table')
     if (path /= '' .or. self%has('hdf5') .or. self%has('animate') .or. self%has('sketch') .or. self%has('no-write')) &
       return
-    if (self%has('equilibrium') .or. self%has('modes')) path = '-'
+    if (self%has('equilibrium') .or. self%has('modes') .or. self%has('exponents')) path = '-'
   end function table_of_answer
 
   !> Whether the program holds a conversation instead of working on a data file.

@@ -8,12 +8,13 @@ module mech9_option_conflicts
 
   !> The options that replace a run by an answer, the first ones before the others.
   character(len=*), parameter :: answers(*) = [character(len=11) :: 'structure', 'check', 'plan', 'branches', 'range', 'cam', &
-                                               'graph', 'equilibrium', 'modes', 'linear', 'dakota']
+                                               'graph', 'equilibrium', 'modes', 'linear', 'exponents', 'dakota']
   !> Those of them that are about positions of equilibrium.
   character(len=*), parameter :: of_rest(*) = [character(len=11) :: 'equilibrium', 'modes', 'linear']
   !> Options that a conversation does not take.
   character(len=*), parameter :: of_files(*) = [character(len=11) :: 'check', 'structure', 'plan', 'branches', 'range', 'cam', &
-                                                'equilibrium', 'modes', 'linear', 'study', 'optimize', 'dakota', 'set']
+                                                'equilibrium', 'modes', 'linear', 'exponents', 'study', 'optimize', 'dakota', &
+                                                'set']
 
 contains
 
@@ -88,6 +89,8 @@ contains
       call judge_study(given, err)
     else if (has('optimize')) then
       call judge_optimum(given, err)
+    else if (has('exponents')) then
+      call judge_exponents(given, err)
     else if (rest_of(given) /= '') then
       call judge_rest(given, err)
     else if (has('animate') .and. answer_of(given) /= '') then
@@ -217,6 +220,25 @@ contains
       call raise(err, exit_usage, '--linear is about one equilibrium, and --starts finds several; leave one of them out')
     end if
   end subroutine judge_rest
+
+  !> Fail because of options that have no meaning beside --exponents.
+  pure subroutine judge_exponents(given, err)
+    character(len=*), intent(in) :: given(:)           !< names of the options that are given, without the dashes
+    type(error_type), allocatable, intent(out) :: err  !< allocated if there are any
+    character(len=*), parameter :: allowed(*) = [character(len=9) :: 'exponents', 'table', 'report', 'no-write', 'quiet', 'set']
+    integer :: i
+
+    do i = 1, size(given)
+      if (any(given(i) == allowed)) cycle
+      if (any(given(i) == answers)) then
+        call raise(err, exit_usage, '--'//trim(given(i))//' and --exponents are two tasks; give one of them')
+      else
+        call raise(err, exit_usage, '--'//trim(given(i))//' has no meaning beside --exponents, which writes a table and a '// &
+                   'report; leave one of them out')
+      end if
+      return
+    end do
+  end subroutine judge_exponents
 
   !> Check the options of a conversation: it takes one data file or none, and no option that replaces the run by an answer.
   pure subroutine judge_conversation(program, given, has_file, err)

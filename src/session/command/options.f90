@@ -44,6 +44,8 @@ module mech9_options
                 'the mode of --modes that --animate shows'), &
     option_type('linear', needed_argument, 'FILE.h5', any_text, .false., dynamics, &
                 'write the linearised equations of motion there as matrices'), &
+    option_type('exponents', needed_argument, 'K', whole_number, .false., dynamics, &
+                'find the K largest Lyapunov exponents of the motion'), &
     option_type('range', no_argument, '', any_text, .false., kinematics, &
                 'print how far each independent coordinate can go from the start'), &
     option_type('cam', needed_argument, '[N:]FILE', any_text, .true., kinematics, &
@@ -55,7 +57,7 @@ module mech9_options
     option_type('hdf5', needed_argument, 'PATH', any_text, .false., both, &
                 'write the results as an HDF5 file'), &
     option_type('plot', needed_argument, '[TARGET:]NAMES', any_text, .true., both, &
-                'plot columns, as in q3,P.x or P.x:P.y; TARGET is a picture or term'), &
+                'plot columns: q3,P.x or P.x:P.y or section:q1:q2; TARGET: file or term'), &
     option_type('names', no_argument, '', any_text, .false., both, &
                 'call columns of the table and of plots by names of pairs: B.q'), &
     option_type('sketch', needed_argument, 'FILE.svg', any_text, .false., both, &

@@ -25,7 +25,7 @@ contains
     name = program_names(options%program)
     answer = options%answer()
     ! options without effect are refused there
-    if (options%rest() /= '') return
+    if (options%rest() /= '' .or. options%has('exponents')) return
     if (answer /= '') then
       call list_given(options, of_runs, names)
       if (names /= '') write (unit, '(a)') name//': without effect: '//names//'; --'//answer//' makes no run'

@@ -1,0 +1,45 @@
+"""Sections and Lyapunov exponents in Python, against closed forms."""
+import numpy as np
+import pytest
+
+
+@pytest.fixture
+def oscillator(mech9):
+    """x = 0.3 cos 2t + 0.2 sin 2t, without losses."""
+    m = mech9.Mechanism(title='oscillator')
+    m.add('structure', cq=1)
+    m.add('pair', coordinate=1, links=(1, 2), kind='prismatic', axis=(1, 0, 0))
+    m.add('body', link=2, mass=1.0)
+    m.add('load', kind='coordinate', coordinate=1, stiffness=4.0)
+    m.add('initial', coordinate=1, position=0.3, velocity=0.4)
+    m.add('solver', relative_tolerance=1e-12, absolute_tolerance=1e-13)
+    return m
+
+
+def test_section(checks, mech9, oscillator):
+    """The points of a run; a run without a section has none."""
+    with pytest.raises(mech9.UsageError):
+        _ = oscillator.dynamics(end=10).section
+    oscillator.add('section', coordinate=1, value=0.1, direction=-1)
+    section = oscillator.dynamics(end=20, intervals=3).section
+    turn = np.arctan2(0.2, 0.3) + np.arccos(0.1 / np.hypot(0.3, 0.2))
+    expected = (turn + 2 * np.pi * np.arange(10)) / 2
+    # tolerance: three hundred steps of 1e-12
+    checks.near(section.t, expected[expected < 20], 1e-10, 'times of the points', scale=20)
+    checks.near(section['q1'], 0.1, 1e-14, 'the value')
+    checks.equal(section['point'].tolist(), list(range(1, len(section.t) + 1)), 'the points count from 1')
+    checks.equal((section.names[:4], section.units['dq1']), (('point', 't', 'q1', 'dq1'), 'm/s'), 'names and units')
+    checks.true(not section.table.flags.writeable, 'the points are read-only')
+
+
+def test_exponents(checks, mech9, oscillator):
+    """A damped oscillator with real roots; refusals are exceptions."""
+    oscillator.add('load', kind='coordinate', coordinate=1, damping=5.0)
+    oscillator.add('time', end=40)
+    found = oscillator.exponents(2, transient=20)
+    checks.near(found.values, [-1, -4], 1e-8, 'the roots', scale=1)
+    checks.equal((found.history.shape, found.t[-1]), ((200, 2), 40.0), 'the running means')
+    checks.near(found.history[-1], found.values, 1e-15, 'they end with the exponents')
+    checks.near(oscillator.exponents(transient=20, time=5).values, [-1], 1e-6, 'one exponent, over another time', scale=1)
+    with pytest.raises(mech9.UsageError):
+        oscillator.exponents(3)
