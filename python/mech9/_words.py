@@ -11,7 +11,7 @@ from ._errors import UsageError
 
 # The groups of the words that a run takes.
 _RUN_GROUPS = {
-    'time': ('start', 'end', 'intervals'),
+    'time': ('start', 'end', 'intervals', 'at'),
     'solver': ('method', 'accuracy', 'relative_tolerance', 'absolute_tolerance', 'maximum_steps'),
     'output': ('coordinates', 'derivatives', 'energies', 'reactions', 'reaction_pairs', 'drive_forces', 'sensitivities', 'gradients',
                'poses', 'conditioning', 'links', 'poles', 'reaction_magnitudes', 'reaction_axes'),

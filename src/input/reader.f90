@@ -222,6 +222,12 @@ contains
     type(time_grid_type), intent(out) :: time             !< the times of the results [s]
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
 
+    if (has_name(group, 'at')) then
+      time%start = get_real(group, 'at')
+      time%end = time%start
+      time%intervals = 0
+      return
+    end if
     time%start = get_real(group, 'start')
     time%end = get_real(group, 'end')
     time%intervals = get_integer(group, 'intervals')

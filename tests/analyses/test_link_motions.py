@@ -270,6 +270,16 @@ def test_quaternions_pass_gimbal_lock(case):
     case.checks.true(np.linalg.norm(np.diff(e), axis=0).max() <= 1.1 * bound, 'no jumps', np.abs(np.diff(e)).max())
 
 
+def test_one_instant(case):
+    """&time at= gives one row: that of a run which is there at this time. It counts before start, end and intervals."""
+    whole = columns_of(case, NORTON.format(guess=-20).replace('end=0.7, intervals=140', 'end=0.02, intervals=1'))
+    for text in (NORTON.format(guess=-20).replace('start=0, end=0.7, intervals=140', 'at=0.02'), NORTON.format(guess=-20)):
+        one = columns_of(case, text, *(() if 'at=' in text else ('--set', 'time.at=0.02')))
+        case.checks.equal(one['t'].tolist(), [0.02], 'one row')
+        for name in ('q1', 'L3.phi', 'L3.omega', 'L4.alpha', 'L3.pole.x'):
+            case.checks.near(one[name][0], whole[name][1], 1e-10, name, scale=abs(whole[name][1]))
+
+
 def against_runs(case, text, parameters, program=None, tolerance=2e-9, prefixes=('L', 'R'), relative_step=STEP):
     """Derivatives of the columns of links and forces against differences of runs."""
     declared = ''.join(f"&parameter name='{name}', sets='{target}', value={value!r} /\n" for name, target, value in parameters)

@@ -125,12 +125,7 @@ contains
     if (group == 'initial') then
       if (outline%program == kinematics .or. .not. all(outline%independent)) &
         call append(questions, count, question_type(kind=ask_guesses, topic=topic, group_row=group_row))
-    else if (any(item_table(rows)%seldom) .and. group /= 'mechanism' .and. .not. (group == 'pair' .and. outline%lengths) .and. &
-             (draft%count_of(group) > 0 .or. .not. (is_on_request(group_row) .or. &
-                                                     any(group == ['load    ', 'motor   ', 'cam     ', 'coupling'])))) then
-      ! A conversation does not begin with rarely used names. Those of the mechanism can be changed by their names.
-      ! Those of loads, motors, cams, couplings and of groups that are begun on request are asked for in groups that
-      ! exist.
+    else if (asks_for_seldom(draft, outline, group_row)) then
       call append(questions, count, question_type(kind=ask_seldom, topic=topic, group_row=group_row))
     end if
     may_begin = can_be_left_out(group_row, outline%program)
@@ -142,6 +137,23 @@ contains
                                                   row=rows(1), is_new=.true., on_request=is_on_request(group_row)))
     if (group == 'initial') call append(questions, count, question_type(kind=check_start, topic=topic))
   end subroutine ask_about_group
+
+  !> Whether there is a question which rarely used names of a group the user wants to give. A conversation does not begin with such
+  !> names. Those of mechanism and time, and of pairs with lengths, can be changed by their names. Those of loads, motors, cams,
+  !> couplings and of groups that are begun on request are asked for in groups that exist.
+  pure logical function asks_for_seldom(draft, outline, group_row)
+    type(draft_type), intent(in) :: draft      !< groups and names with their values as text
+    type(outline_type), intent(in) :: outline  !< facts known beside the draft
+    integer, intent(in) :: group_row           !< row of the group in group_table
+    character(len=:), allocatable :: group
+
+    group = trim(group_table(group_row)%name)
+    asks_for_seldom = any(item_table(rows_of_group(group))%seldom) .and. all(group /= ['mechanism', 'time     ']) .and. &
+                      .not. (group == 'pair' .and. outline%lengths)
+    if (draft%count_of(group) > 0) return
+    asks_for_seldom = asks_for_seldom .and. .not. (is_on_request(group_row) .or. &
+                                                   any(group == ['load    ', 'motor   ', 'cam     ', 'coupling']))
+  end function asks_for_seldom
 
   !> Append the questions about the names of one group.
   pure subroutine ask_about_one(draft, outline, template, rows, questions, count)

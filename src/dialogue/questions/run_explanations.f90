@@ -172,6 +172,9 @@ module mech9_run_explanations
     explanation_type('time', 'intervals', '', &
                   'The time from start to end is divided into this number of equal steps, with a result at the end of '// &
                   'each; 0 gives the start alone.', '200 (201 results)'), &
+    explanation_type('time', 'at', '', &
+                  'There is then one result, at this time, as homework asks for it; start, end and intervals do not '// &
+                  'count.', '0.3'), &
     explanation_type('solver', 'method', '', &
                   'The method integrates the equations of motion; auto serves nearly always: it makes the steps of '// &
                   'prince-dormand, of order 8, and those of bdf while very stiff springs or dampers would hold them down.', &

@@ -398,6 +398,8 @@ module mech9_grammar
     item_row_type('time', 'end', 'real', 1, 1, 's', optional, '1', '', '', '', 'time of the last result', '2.5'), &
     item_row_type('time', 'intervals', 'integer', 1, 1, '', optional, '100', '>=0', '', '', &
                   'number of intervals between the results; 0 for the start alone', '200'), &
+    item_row_type('time', 'at', 'real', 1, 1, 's', optional, '(start to end)', '', '', '', &
+                  'one instant: one result at this time, in place of start, end and intervals', '0.3', seldom=.true.), &
     item_row_type('solver', 'method', 'text', 1, 1, '', optional, '''auto''', '', &
                   'auto prince-dormand dormand-prince verner fehlberg merson adams bdf', '', &
                   'the method of integration; auto: prince-dormand, and bdf while the motion is stiff', '''bdf'''), &
