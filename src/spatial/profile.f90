@@ -106,29 +106,42 @@ contains
     integer, intent(inout) :: piece               !< its piece; 0: none so far
     integer, intent(inout) :: part                !< its part
     real(wp), intent(inout) :: u                  !< its parameter [m]
-    real(wp) :: from, to, slope_from, slope_to, found, distance
+    real(wp) :: from, to, slope_from, slope_to
     integer :: i
 
     from = curve%u(k - 1)
     slope_from = slope(from)
+    ! a foot between two parts may be none of either, by round-off
+    if ((k > 1 .or. curve%closed) .and. slope_from > 0.0_wp) &
+      call take(from, nearest, piece, part, u)
     do i = 1, divisions
       to = curve%u(k - 1) + i*((curve%u(k) - curve%u(k - 1))/divisions)
       if (i == divisions) to = curve%u(k)
       slope_to = slope(to)
       if (slope_from <= 0.0_wp .and. slope_to >= 0.0_wp) then
-        found = root(from, to)
-        distance = norm2(position(curve, k, found) - point)
-        if (distance < nearest) then
-          nearest = distance
-          piece = number
-          part = k
-          u = found
-        end if
+        call take(root(from, to), nearest, piece, part, u)
       end if
       from = to
       slope_from = slope_to
     end do
   contains
+    !> Take a point of the part if it is nearer.
+    pure subroutine take(x, nearest, piece, part, u)
+      real(wp), intent(in) :: x             !< its parameter [m]
+      real(wp), intent(inout) :: nearest    !< distance of the nearest foot so far [m]
+      integer, intent(inout) :: piece       !< its piece
+      integer, intent(inout) :: part        !< its part
+      real(wp), intent(inout) :: u          !< its parameter [m]
+      real(wp) :: distance
+
+      distance = norm2(position(curve, k, x) - point)
+      if (distance >= nearest) return
+      nearest = distance
+      piece = number
+      part = k
+      u = x
+    end subroutine take
+
     !> Half the derivative of the squared distance by the parameter.
     pure real(wp) function slope(x)
       real(wp), intent(in) :: x   !< parameter [m]
@@ -140,8 +153,8 @@ contains
 
     !> The parameter between two where the slope vanishes, by Newton's method within a shrinking interval.
     pure real(wp) function root(low, high) result(x)
-      real(wp), intent(in) :: low    !< where the slope is not positive [m]
-      real(wp), intent(in) :: high   !< where it is not negative [m]
+      real(wp), intent(in) :: low    !< parameter at which the slope is not positive [m]
+      real(wp), intent(in) :: high   !< parameter at which it is not negative [m]
       real(wp), dimension(3) :: at, first, second, third
       real(wp) :: a, b, f, change
       integer :: step

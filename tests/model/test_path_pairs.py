@@ -344,10 +344,10 @@ ONE_PATH = ("&pair coordinate=1, links=1,2, kind='path', file='curve.dat'{} /\n&
             "&drive coordinate=1, kind='polynomial', coefficients=0.5 /\n")
 SQUARE = '0 0\n1 0\n1 1\n0 1\n'
 FILES_OF_CURVES = [
-    ('0 0\n1 0\n1 1\n', '', DATA, 'curve.dat: a smooth curve needs at least 4 points, and the file has 3; the pair in line 1 of'),
+    ('0 0\n1 0\n1 1\n', '', DATA, 'curve.dat: a curve needs at least 4 points, and the file has 3; the group in line 1 of'),
     ('0 0\n1 0\n1 1\n0 0\n', '', DATA, 'curve.dat:4:1: a smooth curve needs at least 4 different points, and this closed one has 3; add points'),
     ('', '', DATA, "curve.dat': the whole file is empty"),
-    ('# nothing\n', '', DATA, 'curve.dat: a smooth curve needs at least 4 points, and the file has 0'),
+    ('# nothing\n', '', DATA, 'curve.dat: a curve needs at least 4 points, and the file has 0'),
     ('0 0\n1 0\n1 0\n1 1\n0 1\n', '', DATA, 'curve.dat:3:1: this point repeats the one before it'),
     ('0 0\n1 0\n1 x\n0 1\n', '', DATA, "curve.dat:3:3: 'x' is not a number"),
     ('0 0\n1 nan\n1 1\n0 1\n', '', DATA, "curve.dat:2:3: 'nan'"),

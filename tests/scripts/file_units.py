@@ -93,6 +93,8 @@ def in_units(groups, units, folder):
         convert_items(items, FIXED.get(kind, {}), units, None)
         if motion:
             convert_items(items, OF_COORDINATE.get(kind, {}), units, motion, exponent)
+        if kind == 'contact' and 'file' in items:
+            items['scale'] = [float(items.get('scale', [1.0])[0]) / units.L]
         if kind == 'contact':
             for name, power in (('stiffness', exponent), ('damping', exponent + 1)):
                 if name in items:

@@ -61,6 +61,8 @@ def scaled(groups, s):
         for name, power in change.items():
             if name in items:
                 items[name] = [float(value) * s ** power for value in items[name]]
+        if group == 'contact' and 'file' in items:
+            items['scale'] = [float(items.get('scale', [1.0])[0]) * s]
         if 'dh' in items:
             items['dh'] = [float(value) * (s if i in (0, 2) else 1.0) for i, value in enumerate(items['dh'])]
     return slides
@@ -69,12 +71,12 @@ def scaled(groups, s):
 def in_degrees(groups):
     """The groups with angles in degrees, by the rules of the data file: forces and stiffnesses stay those per rad."""
     slides = sliding(groups)
-    always = {'drive': ['angular_frequency', 'phase']}
+    of_laws = ['angular_frequency', 'phase']
     of_turns = {'initial': ['position', 'velocity'], 'drive': ['coefficients', 'mean', 'amplitude', 'values'],
                 'coordinate': ['rest'], 'stop': ['low', 'high']}
     for group, items in groups:
         kind = items['kind'][0] if group == 'load' else group
-        names = list(always.get(kind, []))
+        names = list(of_laws if group in ('drive', 'load') else [])
         if kind in of_turns and items['coordinate'][0] not in slides:
             names += of_turns[kind]
         for name in names:

@@ -229,9 +229,27 @@ module mech9_force_explanations
     explanation_type('contact', 'kind', '', &
                   'The surface is a plane, or a sphere.', 'plane'), &
     explanation_type('contact', 'origin', '', &
-                  'A point of the plane, or the centre of the sphere, in the system of its link.', '0 0 0'), &
+                  'A point of the plane, the centre of the sphere, or the origin of the path, in the system of its link.', &
+                  '0 0 0'), &
     explanation_type('contact', 'normal', '', &
                   'The direction from the plane to its free side, in the axes of its link.', '0 0 1 (upwards)'), &
+    explanation_type('contact', 'file', '', &
+                  'Name the text file with the points of a path: x and y in each line. A smooth curve goes through them. An '// &
+                  'empty line makes a corner at the point before it. A closed curve has its first point again at the end.', &
+                  'cam.dat (with lines such as: 0.1 0.25)'), &
+    explanation_type('contact', 'columns', '', &
+                  'A file of a path can have further columns. Tell in which of them x and y stand.', '3, 4'), &
+    explanation_type('contact', 'scale', '', &
+                  'All coordinates in the file of a path are multiplied by this number.', '0.001'), &
+    explanation_type('contact', 'axis', '', &
+                  'The direction across the plane of a path, in the axes of its link. The surface goes on along it.', 'z'), &
+    explanation_type('contact', 'zero', '', &
+                  'The direction of x in the file of a path, in the axes of its link; it is made perpendicular to axis.', 'x'), &
+    explanation_type('contact', 'closed', '', &
+                  'A closed path has no ends. The file says it by its last point, which is the first one again.', 'no'), &
+    explanation_type('contact', 'side', '', &
+                  'The ball is outside or inside of a closed path, or to the left or right of any path, seen along the curve '// &
+                  'with the axis up.', 'left'), &
     explanation_type('contact', 'radius', '', &
                   'Of the ball about the point. Enter: the point itself touches.', '0.05'), &
     explanation_type('contact', 'other_radius', '', &

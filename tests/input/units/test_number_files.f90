@@ -99,8 +99,26 @@ contains
     call gives(space, [3, 1], reshape([9, 0, 0, 8, 2, 0, 7, 4, 0, 6, 6, 0], [3, 4]))
     call says([plane(:3), space(4:)], [integer ::], path//':4:1: each line holds the coordinates of a point')
     call says(plane, [1, 3], path//":1:1: column 3 is asked for by 'columns', and this line has 2 numbers")
-    call says(plane(:3), [integer ::], 'a smooth curve needs at least 4 points, and the file has 3')
+    call says(plane(:3), [integer ::], 'a curve needs at least 4 points, and the file has 3')
+    call parts([character(len=12) :: '', '0 0', '1 0', '', '# side', '1 1', '', '', '0 1', ' '], [.false., .true., .true., .false.])
   contains
+    !> Empty lines between points make corners; comments do not, nor empty lines before and behind all points.
+    subroutine parts(lines, expected)
+      character(len=*), intent(in) :: lines(:)   !< of the file
+      logical, intent(in) :: expected(:)         !< (n) which points are corners
+      type(diagnostics_type) :: diagnostics
+      type(span_type), allocatable :: spans(:)
+      real(wp), allocatable :: points(:, :)
+      logical, allocatable :: corners(:)
+      logical :: ok
+
+      call save_lines(tester, path, lines)
+      call read_curve_file(path, span_type(), [integer ::], 2, points, spans, corners, ok, diagnostics)
+      call remove_file(path)
+      call tester%is_true(ok .and. size(corners) == size(expected), 'a curve with corners: '//first_message(diagnostics))
+      if (size(corners) == size(expected)) call tester%is_true(all(corners .eqv. expected), 'its corners')
+    end subroutine parts
+
     subroutine gives(lines, chosen, expected)
       character(len=*), intent(in) :: lines(:)   !< of the file
       integer, intent(in) :: chosen(:)           !< columns
@@ -108,14 +126,15 @@ contains
       type(diagnostics_type) :: diagnostics
       type(span_type), allocatable :: spans(:)
       real(wp), allocatable :: points(:, :)
+      logical, allocatable :: corners(:)
       logical :: ok
 
       call save_lines(tester, path, lines)
-      call read_curve_file(path, span_type(), chosen, points, spans, ok, diagnostics)
+      call read_curve_file(path, span_type(), chosen, 4, points, spans, corners, ok, diagnostics)
       call remove_file(path)
       call tester%is_true(ok, 'a curve: '//first_message(diagnostics))
       call near_matrix(tester, points, real(expected, wp), 0.0_wp, 'its points')
-      call tester%is_true(size(spans) == 4, 'places of the points')
+      call tester%is_true(size(spans) == 4 .and. .not. any(corners), 'places of the points, and no corner')
     end subroutine gives
 
     subroutine says(lines, chosen, words)
@@ -125,10 +144,11 @@ contains
       type(diagnostics_type) :: diagnostics
       type(span_type), allocatable :: spans(:)
       real(wp), allocatable :: points(:, :)
+      logical, allocatable :: corners(:)
       logical :: ok
 
       call save_lines(tester, path, lines)
-      call read_curve_file(path, span_type(), chosen, points, spans, ok, diagnostics)
+      call read_curve_file(path, span_type(), chosen, 4, points, spans, corners, ok, diagnostics)
       call remove_file(path)
       call tester%is_true(.not. ok .and. index(first_message(diagnostics), words) > 0, 'message: '//first_message(diagnostics))
     end subroutine says
