@@ -144,20 +144,20 @@ contains
         if (names(i) /= name) cycle
         ! rates in turns per minute are not those of angles in their unit
         if (order > 0) then
-          if (units(i) /= rate_of(trim(units(record%columns(order - 1))))) cycle
+          if (units(i) /= rate_of(trim(units(record%columns(max(order - 1, 0)))))) cycle
         end if
         record%columns(order) = i
       end do
       if (record%columns(order) == 0) exit
       if (record%columns(0) > n_motion) exit
-      name = derivative_of(name)
+      name = trim(derivative_of(name))
     end do
   end subroutine find_columns
 
   !> The unit of a derivative in time.
   pure function rate_of(unit) result(rate)
     character(len=*), intent(in) :: unit   !< the unit
-    character(len=:), allocatable :: rate
+    character(len=len(unit) + 2) :: rate
 
     rate = unit//'/s'
     if (len(unit) < 2) return
@@ -167,7 +167,7 @@ contains
   !> The heading of the derivative of a column of the motion in time; '' where there is none.
   pure function derivative_of(name) result(derivative)
     character(len=*), intent(in) :: name   !< heading of the column
-    character(len=:), allocatable :: derivative
+    character(len=len(name) + 1) :: derivative
     integer :: dot
 
     derivative = ''

@@ -206,7 +206,7 @@ contains
         else if (row > 0) then
           call check_item(item, item_table(row), diagnostics)
         else if (index(item_table(rows(1))%kinds, 'law:') == 1 .and. index(kind, 'law:') == 0) then
-          call diagnostics%add(item%span, ''''//item%name//''' needs '//laws_of(item_table(rows(1))%kinds))
+          call diagnostics%add(item%span, ''''//item%name//''' needs '//trim(laws_of(item_table(rows(1))%kinds)))
         else if (kind /= '') then
           call diagnostics%add(item%span, ''''//item%name//''' does not belong to '//trim(plural_of(group%name))// &
                                ' of kind '''//trim(in_words(kind))//'''')
@@ -218,7 +218,7 @@ contains
   !> The laws that a name belongs to, in words.
   pure function laws_of(kinds) result(words)
     character(len=*), intent(in) :: kinds     !< as law:table law:segments
-    character(len=:), allocatable :: words
+    character(len=2*len(kinds) + 20) :: words
     integer :: at, next
 
     words = 'law='''
@@ -226,10 +226,10 @@ contains
     do
       next = index(kinds(at:), ' law:')
       if (next == 0) exit
-      words = words//kinds(at:at + next - 2)//''' or '''
+      words = trim(words)//kinds(at:at + next - 2)//''' or '''
       at = at + next + 4
     end do
-    words = words//trim(kinds(at:))//''''
+    words = trim(words)//trim(kinds(at:))//''''
   end function laws_of
 
   !> The plural of the name of a group.

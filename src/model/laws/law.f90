@@ -131,8 +131,9 @@ contains
                  trim(merge('before', 'after ', t < first))//' t = '//to_text(edge, digits)//' s, and '//demand//' t = '// &
                  to_text(t, digits)//' s; '//remedy//' or shorten &time', self%place)
     else
-      call raise(err, exit_integrator, 'the '//name//' of '//trim(self%owner())//' has values from '//self%wording_at(first)// &
-                 ' to '//self%wording_at(last)//' only, and the motion leads to '//self%wording_at(t, digits)//'; '//remedy// &
+      call raise(err, exit_integrator, 'the '//name//' of '//trim(self%owner())//' has values from '// &
+                 trim(self%wording_at(first))//' to '//trim(self%wording_at(last))//' only, and the motion leads to '// &
+                 trim(self%wording_at(t, digits))//'; '//remedy// &
                  ' or give period=', self%place)
     end if
   end subroutine refuse_time
@@ -142,13 +143,13 @@ contains
     class(law_type), intent(in) :: self        !< the law
     real(wp), intent(in) :: x                  !< value of the variable
     integer, intent(in), optional :: digits    !< number of digits that are shown; 6 unless given
-    character(len=:), allocatable :: words
+    character(len=80) :: words
     integer :: shown
 
     shown = 6
     if (present(digits)) shown = digits
     words = trim(self%variable)//' = '//to_text(x, shown)
-    if (self%variable_unit /= '') words = words//' '//trim(self%variable_unit)
+    if (self%variable_unit /= '') words = trim(words)//' '//trim(self%variable_unit)
   end function wording_at
 
   !> The owner of the law in messages.

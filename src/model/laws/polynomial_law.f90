@@ -37,7 +37,7 @@ contains
     call sum_terms(self%coefficients, t, q, dq, ddq)
     if (.not. (ieee_is_finite(q) .and. ieee_is_finite(dq) .and. ieee_is_finite(ddq))) &
       call raise(err, exit_data, 'the polynomial of the '//trim(self%owner())//' or a derivative of it is beyond all '// &
-                 'numbers at '//self%wording_at(t, 12)//'; correct its coefficients', self%place)
+                 'numbers at '//trim(self%wording_at(t, 12))//'; correct its coefficients', self%place)
   end subroutine evaluate
 
   !> A polynomial and its first two derivatives.
