@@ -7,7 +7,7 @@ module mech9_coupling_reader
   use mech9_pair, only: pair_slot_type
   use mech9_units, only: units_type, coordinate_units_type
   use mech9_mechanism, only: mechanism_type
-  use mech9_result_units, only: si_unit
+  use mech9_result_units, only: si_unit, unit_name
   use mech9_coupling, only: coupling_slot_type
   use mech9_linear_coupling, only: linear_coupling_type
   use mech9_table_coupling, only: table_coupling_type, new_table_coupling, new_turning_table
@@ -164,7 +164,7 @@ contains
       call new_table_coupling(points(1, :), points(2, :), table, err)
     end if
     table%unit = units(1)
-    table%unit_name = mechanism%units%name_of(trim(si_unit(mechanism%pairs(k(1))%pair)))
+    table%unit_name = unit_name(mechanism, k(1))
     if (allocated(err)) then
       call explain(err)
       call diagnostics%add(span_of(group, 'file', 1), err%message, err%code)

@@ -42,8 +42,10 @@ contains
   pure character(len=3) function unit_name(mechanism, k)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     integer, intent(in) :: k                        !< number of the coordinate
+    character(len=longest_unit) :: full
 
-    unit_name = mechanism%units%name_of(trim(si_unit(mechanism%pairs(k)%pair)))
+    full = mechanism%units%name_of(trim(si_unit(mechanism%pairs(k)%pair)))
+    unit_name = full(:len(unit_name))
   end function unit_name
 
   !> One unit of the rate of coordinate k in the results, in rad/s or m/s.
@@ -58,8 +60,10 @@ contains
   pure character(len=5) function rate_unit_name(mechanism, k) result(name)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     integer, intent(in) :: k                        !< number of the coordinate
+    character(len=longest_unit) :: full
 
-    name = mechanism%units%name_of(trim(si_unit(mechanism%pairs(k)%pair))//'/s')
+    full = mechanism%units%name_of(trim(si_unit(mechanism%pairs(k)%pair))//'/s')
+    name = full(:len(name))
   end function rate_unit_name
 
   !> A length with its unit.

@@ -184,7 +184,7 @@ def test_failed_run(session):
 
 def test_run_that_cannot_begin(session):
     checks = session.checks
-    said, _ = session.after_run('change pair 7 moving_point = 20, 0, 0', 'run', 'show 1', 'compare', 'done', code=5)
+    said, _ = session.after_run('change pair 7 moving_point = 19, 0, 0', 'run', 'show 1', 'compare', 'done', code=5)
     checks.true('assembled' in said[1], 'a rocker that reaches nothing is told', said[1])
     checks.true('no results' in said[2] and 'no results' in said[3], 'there is nothing to look at', said[2:4])
 

@@ -266,7 +266,7 @@ def test_changes(talks, folder):
              ('Removed', 'remove time start'), ('Removed', '?'),
              ('Give the number', '999'), ('no answer that can be changed', 'zero zero zero zero'),
              ('no answer that can be changed', 'add nothing'),
-             ('What can be added: drive, body, load, motor, stop, friction, point, contact,', ''),
+             ('What can be added: link, drive, body, load, motor, stop, friction, point, contact,', ''),
              ('[both]', 'save'), ('data file [p.nml]', '/'),
              ('exists; overwrite it [no]', 'yes'), ('cannot open', '')]
     talks.pipe(talks.mech9d, steps, 'changes', arguments=('--edit', 'p.nml'), folder=folder)
@@ -380,7 +380,7 @@ def test_short_answers(talks, folder):
              ('kind [polynomial]', 'har'), ('mean (deg) [0]', ''), ('amplitude (deg): ', '?'), ('For example: 30 (', '20'),
              ('angular_frequency (deg/s)', '360'), ('phase (deg) [0]', '?'), ('For example: 90 (begins at', ''),
              ('guesses', ''), ('point 1, name', 'none'), ('start', ''), ('end', ''), ('intervals', '10'),
-             ('force_arrows which of them', 'energies'), ("'energies' is none of these names", ''), ('table [', '')]
+             ('reaction_axes which of them', 'energies'), ("'energies' is none of these names", ''), ('table [', '')]
     text = text_saved(talks, talks.mech9k, steps, 'short answers')
     for part in ("angle_unit='deg'", "links=1, 4, kind='prismatic', axis=-1, 0, 0 /", "kind='revolute', axis=0, 0, 1, zero=-1, 0, 0",
                  "links=3, 4, kind='revolute', point=.4, 0, 0, axis=0, 0, 1 /", "kind='harmonic'"):
@@ -492,7 +492,7 @@ def test_forces_of_drives(talks, folder, steps, why):
 
 def test_no_masses_without_forces(talks, folder):
     done = talks.pipe(talks.mech9k, BAR + PLAIN + [
-        ('all is right', 'add body'), ('What can be added: stop, point, contact, parameter, quantity, study,', 'quit')],
+        ('all is right', 'add body'), ('What can be added: link, stop, point, contact, parameter, quantity, study,', 'quit')],
                       'without forces', folder=folder)
     talks.checks.true(not any(word in done.stderr for word in ('Bodies', 'Gravity', 'Loads')), 'no masses without forces',
                       done.stderr)
@@ -518,7 +518,7 @@ def test_new_study(talks, folder):
     talks.checks.true("&study kind='grid' /" in text and 'low=0.5, high=2, count=4' in text, 'a new study: the file has it', text)
     # another kind needs other names; a study can be taken away, and begun by mistake
     steps = [('all is right', 'study kind = latin'), ('runs: ', '20'), ('all is right', 'add study'),
-             ('What can be added: stop, point, contact, parameter, quantity, objective', 'remove study 1'), ('Removed', 'add study'),
+             ('What can be added: link, stop, point, contact, parameter, quantity, objective', 'remove study 1'), ('Removed', 'add study'),
              ('study, kind [none]', 'latin'), ('runs: ', 'remove'), ('The group &study is left out.', 'none'),
              ('all is right', 'add study'), ('kind [none]', 'random'), ('runs: ', '50'), ('all is right', ''), ('[both]', 'save'),
              ('data file [arm.nml]', '')]

@@ -26,7 +26,8 @@ def test_section(checks, mech9, oscillator):
     expected = (turn + 2 * np.pi * np.arange(10)) / 2
     # tolerance: three hundred steps of 1e-12
     checks.near(section.t, expected[expected < 20], 1e-10, 'times of the points', scale=20)
-    checks.near(section['q1'], 0.1, 1e-14, 'the value')
+    # the last place of a time moves the value by 3e-15
+    checks.near(section['q1'], 0.1, 5e-14, 'the value')
     checks.equal(section['point'].tolist(), list(range(1, len(section.t) + 1)), 'the points count from 1')
     checks.equal((section.names[:4], section.units['dq1']), (('point', 't', 'q1', 'dq1'), 'm/s'), 'names and units')
     checks.true(not section.table.flags.writeable, 'the points are read-only')

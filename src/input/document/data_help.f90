@@ -242,9 +242,24 @@ contains
 
     text = trim(row%help)
     if (index(row%kinds, 'law:') == 1) then
-      text = '(law '//trim(row%kinds(5:))//') '//text
+      text = '(law '//word_list(kinds_of_laws(trim(row%kinds)))//') '//text
     else if (row%kinds /= '') then
       text = '('//word_list(trim(row%kinds))//') '//text
     end if
   end function meaning_text
+
+  !> Kinds of laws without the word in front of each: "table segments" of "law:table law:segments".
+  pure function kinds_of_laws(kinds) result(words)
+    character(len=*), intent(in) :: kinds   !< with blanks between
+    character(len=:), allocatable :: words
+    character(len=*), parameter :: mark = 'law:'
+    integer :: at
+
+    words = kinds
+    do
+      at = index(words, mark)
+      if (at == 0) return
+      words = words(:at - 1)//words(at + len(mark):)
+    end do
+  end function kinds_of_laws
 end module mech9_data_help

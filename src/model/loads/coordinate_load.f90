@@ -30,7 +30,7 @@ module mech9_coordinate_load
     procedure :: take_numbers
     procedure :: vary_by_numbers
     procedure :: varied_potential
-    procedure, private, non_overridable :: has_potential
+    procedure, non_overridable :: has_potential
   end type coordinate_load_type
 
 contains

@@ -128,10 +128,9 @@ contains
       end do
       if (size(drives) == 1) then
         write (unit, '(a)') 'note: the drive of coordinate '//to_text(drives(1)%drive%coordinate)//' stands still, so that '// &
-          'nothing moves; a polynomial drive moves by its second coefficient'
+          'nothing moves'
       else
-        write (unit, '(a)') 'note: all drives stand still, so that nothing moves; a polynomial drive moves by its second '// &
-          'coefficient'
+        write (unit, '(a)') 'note: all drives stand still, so that nothing moves'
       end if
     end associate
   end subroutine print_standing

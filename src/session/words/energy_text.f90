@@ -46,10 +46,10 @@ contains
       select type (load => model%mechanism%loads(i)%load)
       class is (coordinate_load_type)
         damped = damped .or. abs(load%damping) > 0.0_wp
-        loaded = loaded .or. allocated(load%law) .or. abs(load%force) > 0.0_wp
+        loaded = loaded .or. .not. load%has_potential() .or. (abs(load%force) > 0.0_wp .and. .not. allocated(load%over))
       class is (spring_load_type)
         damped = damped .or. abs(load%damping) > 0.0_wp
-        loaded = loaded .or. allocated(load%law)
+        loaded = loaded .or. allocated(load%law) .or. allocated(load%over)
       class is (force_load_type)
         loaded = loaded .or. .not. load%is_idle()
       class default

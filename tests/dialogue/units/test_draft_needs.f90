@@ -89,7 +89,8 @@ contains
                         size(friction_texts) + size(contact_texts) + size(cam_texts) + size(study_texts) + &
                         size(long_term_texts) + size(run_texts) == &
                         size(explanations), 'the parts are the whole')
-    call tester%is_true(all(pair_texts%group == 'pair') .and. all(coupling_texts%group == 'coupling') .and. &
+    call tester%is_true(all(pair_texts%group == 'pair' .or. pair_texts%group == 'link') .and. &
+                        all(coupling_texts%group == 'coupling') .and. &
                         all(cam_texts%group == 'cam') .and. all(motor_texts%group == 'motor') .and. &
                         all(load_texts%group == 'load'), 'parts of one group')
     call judge(general_texts)

@@ -180,6 +180,7 @@ contains
     call tester%no_error(err, 'a plan')
     state%t = 3.0_wp
     call columns%fill(model%mechanism, plan, state, row(:7))
+    call columns%convert(row(:7))
     call near_vector(tester, row(:2), [3.0_wp, 90.0_wp], tol, 'time and the crank')
     call tester%near(row(3), -90.0_wp - asin(0.3_wp)*180.0_wp/pi, 1.0e-10_wp, 'the rod against the crank [deg]')
     call near_vector(tester, row(4:7), [sqrt(0.91_wp), sqrt(0.91_wp), 0.0_wp, 0.0_wp], tol, 'the slide and its point')

@@ -78,8 +78,8 @@ contains
       call ask(tester, 'a.nml --animate '//trim(right(i)), '', requests, err)
       call tester%no_error(err, trim(right(i)))
     end do
-    call ask(tester, 'a.nml --animate b.mp4', '', requests, err)
-    call has_message(tester, err, exit_usage, "'b.mp4' is no name of a moving picture", 'a film of another kind')
+    call ask(tester, 'a.nml --animate b.avi', '', requests, err)
+    call has_message(tester, err, exit_usage, "'b.avi' is no name of a moving picture", 'a film of another kind')
     call ask(tester, 'a.nml --sketch b.gif', '', requests, err)
     call tester%has_error(err, exit_usage, 'a sketch of another kind')
     call ask(tester, 'a.nml', "&output sketch='svg' /"//eol, requests, err)
