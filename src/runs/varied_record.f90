@@ -50,7 +50,6 @@ contains
     class(variable_model_type), intent(inout), target :: variable   !< the model as a function of its parameters; outlives the run
     type(columns_type), intent(in) :: columns                       !< with those of derivatives
     type(error_type), allocatable, intent(out) :: err               !< allocated if it failed
-    integer :: i
 
     allocate (self%forces, self%reactions)
     associate (first => columns%motion + 1, motors => columns%motion + columns%forces() + 1, last => columns%varied + 1)
@@ -76,10 +75,10 @@ contains
   contains
 
     !> Whether a quantity is of one of some columns.
-    logical function is_asked_for(from, to) result(asked)
+    pure logical function is_asked_for(from, to) result(asked)
       integer, intent(in) :: from   !< the first one
       integer, intent(in) :: to     !< the last one
-      integer :: j
+      integer :: i, j
 
       asked = .false.
       if (.not. allocated(simulation%model%request%quantities)) return

@@ -126,17 +126,17 @@ contains
     end do
   contains
     !> Take a point of the part if it is nearer.
-    pure subroutine take(x, nearest, piece, part, u)
+    pure subroutine take(x, least, piece, part, u)
       real(wp), intent(in) :: x             !< its parameter [m]
-      real(wp), intent(inout) :: nearest    !< distance of the nearest foot so far [m]
+      real(wp), intent(inout) :: least      !< distance of the nearest foot so far [m]
       integer, intent(inout) :: piece       !< its piece
       integer, intent(inout) :: part        !< its part
       real(wp), intent(inout) :: u          !< its parameter [m]
       real(wp) :: distance
 
       distance = norm2(position(curve, k, x) - point)
-      if (distance >= nearest) return
-      nearest = distance
+      if (distance >= least) return
+      least = distance
       piece = number
       part = k
       u = x
