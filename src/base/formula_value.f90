@@ -134,7 +134,7 @@ contains
     integer, intent(in) :: kind                !< of the step
     integer, intent(in) :: which               !< number of the function
     real(wp), intent(in) :: a                  !< first operand, at most `largest_value`
-    real(wp), intent(in) :: b                  !< second operand, likewise
+    real(wp), intent(in) :: b                  !< second operand, at most `largest_value`
     real(wp), intent(in) :: angle_unit         !< unit of angles [rad]
     type(slope_type), intent(out) :: found     !< the result
 

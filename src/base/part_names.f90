@@ -23,7 +23,7 @@ module mech9_part_names
   !> Ends of columns of pairs, R4.fx, which are the same by names and by numbers.
   character(len=8), parameter :: of_pairs(11) = [character(len=8) :: 'fx', 'fy', 'fz', 'mx', 'my', 'mz', 'f', 'm', 'friction', &
                                                  'loss', 'heat']
-  !> Ends of columns of links, L3.phi, likewise.
+  !> Ends of columns of links, L3.phi, which are the same by names and by numbers.
   character(len=6), parameter :: of_links(16) = [character(len=6) :: 'phi', 'omega', 'alpha', 'e0', 'e1', 'e2', 'e3', &
                                                  'wx', 'wy', 'wz', 'alphax', 'alphay', 'alphaz', 'pole.x', 'pole.y', 'pole.z']
 
@@ -102,7 +102,7 @@ contains
     end do
   end subroutine number_columns
 
-  !> Replace the name of one column likewise. A derivative d(B.q)/d(a) is taken apart.
+  !> Replace the names in one column by numbers. A derivative d(B.q)/d(a) is taken apart.
   pure recursive subroutine number_column(names, text)
     type(part_names_type), intent(in) :: names                !< the names
     character(len=:), allocatable, intent(inout) :: text      !< name of a column

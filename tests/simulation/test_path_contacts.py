@@ -133,6 +133,10 @@ def test_teeth(checks, mech9d, tmp_path):
     checks.near(found['K1.gap'][0], 0.9, 1e-14, 'the nearest is a side of the upper arm')
     checks.near(events[0]['time'], sqrt(2*1.9/G), 1e-12, 'it falls onto the arm below')
     checks.near([found['q1'][-1], found['q2'][-1]], [2, 1.1], 1e-14, 'and rests there')
+    # the arm on the left turns its back to this ball
+    beside, events, _ = go(mech9d, tmp_path, particle(5.0, 0.0) + contact, 0.2)
+    checks.equal(events, [], 'a ball beside the cross meets nothing')
+    checks.near(beside['K1.gap'][0], 1.9, 1e-14, 'and sees the arm on its own side')
     _, _, said = go(mech9d, tmp_path, particle(0.5, 0.5) + contact, 1, code=3)
     checks.true('are 0.8071 m within each other at the start' in said, 'a start in the middle is told', said)
 
@@ -277,6 +281,9 @@ def test_round_an_end(checks, mech9d, tmp_path):
     checks.equal(events, [], 'no event below the end')
     checks.near(found['q2'], -2 + 3*found['t'] - G*found['t']**2/2, 1e-12, 'free flight')
     checks.near(found['K1.gap'][0], hypot(0.15, 1) - 0.1, 1e-15, 'the gap is the distance from the end')
+    for x, speed, intervals in ((-0.2, 5.0, 1), (-0.3, 6.0, 200), (-0.9, 5.5, 7)):
+        _, _, said = go(mech9d, tmp_path, particle(x, -2.0, 0.0, speed) + contact, 0.4, intervals, code=6)
+        checks.true('comes behind its path' in said, f'at x = {x}, whatever the outputs', said)
     _, _, said = go(mech9d, tmp_path, particle(-0.15, -2, 0.0, 6.0) + contact, 1, code=6)
     checks.true('the ball of contact 1 comes behind its path at t = ' in said and 'round one of its ends: it is 0.25 m' in said, 'it is told', said)
 

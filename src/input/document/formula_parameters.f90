@@ -216,7 +216,7 @@ contains
     real(wp), intent(in) :: values(:)                        !< of the parameters
     real(wp), intent(in) :: angle_unit                       !< of the data file [rad]
     real(wp), intent(inout) :: found(:)                      !< (formulas) values of those before; gets its own
-    real(wp), intent(inout) :: slopes(:)                     !< (formulas) derivatives, likewise
+    real(wp), intent(inout) :: slopes(:)                     !< (formulas) derivatives of those before; gets its own
     type(diagnostics_type), intent(inout) :: diagnostics     !< gets an error
     integer, intent(in) :: own                               !< number of the formula
     integer, intent(in), optional :: number                  !< of the parameter by which it is differentiated
