@@ -11,7 +11,8 @@ module mech9_driven_stops
   use mech9_plan, only: plan_type
   use mech9_driven_motion, only: driven_motion_type, advance
   use mech9_driven_angles, only: copy_driven_motion
-  use mech9_stop_contacts, only: stop_contacts_type, gap_motion
+  use mech9_smooth_parts, only: gap_look_type, smooth_parts_type, begin_parts
+  use mech9_stop_contacts, only: stop_contacts_type, look_at_gap
   implicit none
   private
   public :: check_stops
@@ -62,21 +63,27 @@ contains
       logical, intent(out) :: passed        !< it is passed
       real(wp), intent(out) :: t_passed     !< when [s]
       real(wp), intent(out) :: t_behind     !< a time behind it: the present output where the gap is least there [s]
-      real(wp) :: first, middle, deepest
-      integer :: look, trial
+      type(gap_look_type) :: at_last
+      type(smooth_parts_type) :: parts
+      real(wp) :: first, middle
+      integer :: trial
+      logical :: goes_on
 
-      do look = merge(1, looks, abs(h) > 0.0_wp), looks
-        t_behind = driven%state%t - (1.0_wp - real(look, wp)/looks)*h
-        if (look < looks) then
-          if (.not. may_turn(i, look)) cycle
-          call find_least(i, t_behind - h/looks, t_behind + h/looks, t_behind)
+      at_last = gap_look_type(before, contacts%gap(i), contacts%rate(i), 0.0_wp, contacts%place(i))
+      call begin_parts(at_last, look_at_gap(model%mechanism, plan, driven%state, contacts%ends(i)), parts)
+      goes_on = .true.
+      do while (goes_on)
+        if (.not. contacts%ends(i)%is_stop()) then
+          do while (parts%must_halve(model%mechanism%contacts(contacts%ends(i)%contact)))
+            call parts%halve(look_at(i, 0.5_wp*(parts%first%t + parts%last%t)))
+          end do
         end if
-        deepest = gap_at(i, t_behind)
-        passed = deepest < -touching*contacts%ends(i)%unit(plan)
+        call find_behind(i, parts%first, parts%last, passed, t_behind)
         if (passed) exit
+        call parts%go_on(goes_on)
       end do
       if (.not. passed) return
-      first = before
+      first = parts%first%t
       t_passed = t_behind
       do trial = 1, most_trials
         middle = 0.5_wp*(first + t_passed)
@@ -87,21 +94,44 @@ contains
           first = middle
         end if
       end do
-      if (gap_at(i, driven%state%t) < deepest) t_behind = driven%state%t
+      if (gap_at(i, driven%state%t) < gap_at(i, t_behind)) t_behind = driven%state%t
     end subroutine find_passing
 
-    !> Whether the gap may be least near a look, and the end passed there, by the cubic polynomial between the outputs.
-    logical function may_turn(i, look)
-      integer, intent(in) :: i      !< number of the end
-      integer, intent(in) :: look   !< number of the look, below the last one
-      real(wp) :: gaps(-1:1), now(2)
+    !> Find a time at which the gap is clearly below zero, in a time in which it is smooth.
+    subroutine find_behind(i, from, to, passed, time)
+      integer, intent(in) :: i                   !< number of the end
+      type(gap_look_type), intent(in) :: from    !< the gap at the beginning
+      type(gap_look_type), intent(in) :: to      !< the gap at the end
+      logical, intent(out) :: passed             !< there is such a time
+      real(wp), intent(out) :: time              !< the time [s]
+      real(wp) :: duration
+      integer :: look
+
+      duration = to%t - from%t
+      do look = merge(1, looks, abs(duration) > 0.0_wp), looks
+        time = to%t - (1.0_wp - real(look, wp)/looks)*duration
+        if (look < looks) then
+          if (.not. may_turn(from, to, look)) cycle
+          call find_least(i, time - duration/looks, time + duration/looks, time)
+        end if
+        passed = gap_at(i, time) < -touching*contacts%ends(i)%unit(plan)
+        if (passed) exit
+      end do
+    end subroutine find_behind
+
+    !> Whether the gap may be least near a look, and the end passed there, by the cubic polynomial between two times.
+    pure logical function may_turn(from, to, look)
+      type(gap_look_type), intent(in) :: from   !< the gap at the first time
+      type(gap_look_type), intent(in) :: to     !< the gap at the second one
+      integer, intent(in) :: look               !< number of the look, below the last one
+      real(wp) :: gaps(-1:1), duration
       integer :: k
 
-      now = gap_motion(model%mechanism, plan, driven%state, contacts%ends(i))
+      duration = to%t - from%t
       do k = -1, 1
-        gaps(k) = cubic_between(contacts%gap(i), h*contacts%rate(i), now(1), h*now(2), real(look + k, wp)/looks)
+        gaps(k) = cubic_between(from%gap, duration*from%rate, to%gap, duration*to%rate, real(look + k, wp)/looks)
       end do
-      may_turn = gaps(0) <= min(gaps(-1), gaps(1)) .and. gaps(0) < 0.1_wp*abs(h)*max(abs(contacts%rate(i)), abs(now(2)))
+      may_turn = gaps(0) <= min(gaps(-1), gaps(1)) .and. gaps(0) < 0.1_wp*abs(duration)*max(abs(from%rate), abs(to%rate))
     end function may_turn
 
     !> Find the time between two times at which the gap is least, by golden section; a time at which it is below zero will do.
@@ -135,18 +165,27 @@ contains
     real(wp) function gap_at(i, time) result(gap)
       integer, intent(in) :: i       !< number of the end
       real(wp), intent(in) :: time   !< the time [s]
+      type(gap_look_type) :: look
+
+      look = look_at(i, time)
+      gap = look%gap
+    end function gap_at
+
+    !> The motion of this gap.
+    type(gap_look_type) function look_at(i, time) result(look)
+      integer, intent(in) :: i       !< number of the end
+      real(wp), intent(in) :: time   !< the time [s]
       type(driven_motion_type) :: other
       type(error_type), allocatable :: failure
-      real(wp) :: motion(2)
 
-      motion = gap_motion(model%mechanism, plan, driven%state, contacts%ends(i))
+      look = look_at_gap(model%mechanism, plan, driven%state, contacts%ends(i))
       if (abs(time - driven%state%t) > 0.0_wp) then
         call copy_driven_motion(driven, other)
         call advance(drives, plan, other, time, failure)
-        if (.not. allocated(failure)) motion = gap_motion(model%mechanism, plan, other%state, contacts%ends(i))
+        if (.not. allocated(failure)) look = look_at_gap(model%mechanism, plan, other%state, contacts%ends(i))
       end if
-      gap = motion(1)
-    end function gap_at
+      look%t = time
+    end function look_at
 
     !> Fail because an end was passed.
     subroutine fail(i, t_passed, t_behind)

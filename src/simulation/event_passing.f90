@@ -12,7 +12,8 @@ module mech9_event_passing
   use mech9_integrated_motion, only: integrated_motion_type
   use mech9_event_search, only: locate, value_at, of_motor, of_contact, of_rate
   use mech9_friction_passing, only: find_friction, find_rubbing
-  use mech9_stop_contacts, only: gap_motion, gap_acceleration
+  use mech9_smooth_parts, only: gap_look_type, smooth_parts_type, begin_parts
+  use mech9_stop_contacts, only: gap_motion, gap_acceleration, look_at_gap
   use mech9_contact_events, only: refuse_jump
   use mech9_friction_heat, only: take_heat
   implicit none
@@ -104,7 +105,7 @@ contains
     real(wp) :: now(2), gap, rate, unit, change
 
     associate (end => motion%contacts%ends(contact), system => motion%system, corrections => motion%contacts%corrections)
-      if (end%held .or. .not. end%is_rigid) return
+      if (end%held .or. .not. end%is_rigid .or. contact == motion%contacts%behind) return
       unit = end%unit(system%plan)
       now = gap_motion(system%model%mechanism, system%plan, system%state, end)
       gap = now(1)
@@ -179,42 +180,39 @@ contains
     integer, intent(out) :: contact                         !< number of the end; 0: none
     real(wp), intent(out) :: t                              !< time of the passing [s]
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    real(wp), dimension(size(motion%contacts%ends), 2) :: gap, rate, acceleration
+    type(gap_look_type) :: looks(size(motion%contacts%ends), 2)
     real(wp) :: found_at
     integer :: i
-    logical :: passed
+    logical :: passed, jumps
 
     contact = 0
+    motion%contacts%behind = 0
     t = motion%t
     call keep(2)
     call motion%system%move_to(from, y, err)
     if (allocated(err)) return
     call keep(1)
     do i = 1, size(motion%contacts%ends)
+      jumps = .false.
       if (motion%contacts%ends(i)%held) then
         call find_release(motion, i, from, found_at, passed, err)
       else
-        call find_meeting(motion, i, from, gap(i, :), rate(i, :), acceleration(i, :), found_at, passed, err)
+        call find_first_meeting(motion, i, looks(i, 1), looks(i, 2), found_at, passed, jumps, err)
       end if
       if (allocated(err)) return
       if (.not. passed) cycle
       if (contact > 0 .and. abs(found_at - from) >= abs(t - from)) cycle
       contact = i
       t = found_at
+      motion%contacts%behind = merge(i, 0, jumps)
     end do
   contains
     !> Keep the motion of the gaps at one end of the step.
     subroutine keep(place)
       integer, intent(in) :: place   !< 1: at the start, 2: at the end
-      real(wp) :: now(2)
 
       do i = 1, size(motion%contacts%ends)
-        associate (end => motion%contacts%ends(i), system => motion%system)
-          now = gap_motion(system%model%mechanism, system%plan, system%state, end)
-          gap(i, place) = now(1)
-          rate(i, place) = now(2)
-          acceleration(i, place) = gap_acceleration(system%model%mechanism, system%plan, system%state, end)
-        end associate
+        looks(i, place) = present_look(motion, i)
       end do
     end subroutine keep
   end subroutine find_contact
@@ -242,16 +240,64 @@ contains
     if (passed) call locate(motion, of_contact, i, from, t, passed, err)
   end subroutine find_release
 
-  !> Find the time at which an end that is not held is met, or a compliant one is left.
-  subroutine find_meeting(motion, i, from, gap, gap_rate, second_rate, t, passed, err)
+  !> The motion of a gap in the state of the system.
+  pure function present_look(motion, i) result(look)
+    type(integrated_motion_type), intent(in) :: motion   !< the motion
+    integer, intent(in) :: i                             !< number of the end
+    type(gap_look_type) :: look
+
+    associate (end => motion%contacts%ends(i), system => motion%system)
+      look = look_at_gap(system%model%mechanism, system%plan, system%state, end)
+      look%acceleration = gap_acceleration(system%model%mechanism, system%plan, system%state, end)
+    end associate
+  end function present_look
+
+  !> Find the first time in a step at which an end that is not held is met, or a compliant one is left, or a time at which a ball is behind a
+  !> curve that it did not meet.
+  subroutine find_first_meeting(motion, i, first, last, t, passed, jumps, err)
     type(integrated_motion_type), intent(inout) :: motion   !< the motion at the end of a step
     integer, intent(in) :: i                                !< number of the end
-    real(wp), intent(in) :: from                            !< start of the step [s]
-    real(wp), intent(in) :: gap(2)                          !< the gap at both ends of the step [rad, m]
-    real(wp), intent(in) :: gap_rate(2)                     !< its rates there [rad/s, m/s]
-    real(wp), intent(in) :: second_rate(2)                  !< its second derivatives there [rad/s^2, m/s^2]
+    type(gap_look_type), intent(in) :: first                !< the gap at the start of the step
+    type(gap_look_type), intent(in) :: last                 !< the gap at its end
     real(wp), intent(out) :: t                              !< time of the meeting [s]
-    logical, intent(out) :: passed                          !< it is met within the step
+    logical, intent(out) :: passed                          !< it is met within the step, or the ball is behind it
+    logical, intent(out) :: jumps                           !< the ball is behind it and did not meet it
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    type(smooth_parts_type) :: parts
+    real(wp) :: rate
+    logical :: goes_on
+
+    jumps = .false.
+    call begin_parts(first, last, parts)
+    goes_on = .true.
+    do while (goes_on)
+      if (.not. motion%contacts%ends(i)%is_stop()) then
+        associate (contact => motion%system%model%mechanism%contacts(motion%contacts%ends(i)%contact))
+          do while (parts%must_halve(contact))
+            call value_at(motion, of_rate, i, 0.5_wp*(parts%first%t + parts%last%t), rate, err)
+            if (allocated(err)) return
+            call parts%halve(present_look(motion, i))
+          end do
+          t = parts%last%t
+          jumps = parts%jumps(contact)
+          passed = jumps
+          if (passed) return
+        end associate
+      end if
+      call find_meeting(motion, i, parts%first, parts%last, t, passed, err)
+      if (passed .or. allocated(err)) return
+      call parts%go_on(goes_on)
+    end do
+  end subroutine find_first_meeting
+
+  !> Find the time at which an end that is not held is met, or a compliant one is left, in a part of a step in which its gap is smooth.
+  subroutine find_meeting(motion, i, first, last, t, passed, err)
+    type(integrated_motion_type), intent(inout) :: motion   !< the motion at the end of a step
+    integer, intent(in) :: i                                !< number of the end
+    type(gap_look_type), intent(in) :: first                !< the gap at the start of the part
+    type(gap_look_type), intent(in) :: last                 !< the gap at its end
+    real(wp), intent(out) :: t                              !< time of the meeting [s]
+    logical, intent(out) :: passed                          !< it is met within the part
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     type(hermite_type) :: polynomial
     real(wp), dimension(1) :: at, rate, acceleration
@@ -260,21 +306,21 @@ contains
     logical :: leaves
 
     passed = .false.
-    t = motion%t
-    h = motion%t - from
-    associate (end => motion%contacts%ends(i))
+    t = last%t
+    h = last%t - first%t
+    associate (end => motion%contacts%ends(i), gap => [first%gap, last%gap], gap_rate => [first%rate, last%rate])
       ! the gap is positive on the side where the motion is
       sign_of_gap = merge(-1.0_wp, 1.0_wp, end%closed)
-      call build_hermite([from, motion%t], reshape(gap, [1, 2]), reshape(gap_rate, [1, 2]), reshape(second_rate, [1, 2]), &
-                         polynomial)
-      before = from
+      call build_hermite([first%t, last%t], reshape(gap, [1, 2]), reshape(gap_rate, [1, 2]), &
+                         reshape([first%acceleration, last%acceleration], [1, 2]), polynomial)
+      before = first%t
       before_rate = sign_of_gap*gap_rate(1)*sign(1.0_wp, h)
       leaves = sign_of_gap*gap(1) < 0.0_wp .and. before_rate > 0.0_wp
       do look = 1, looks
-        t = from + real(look, wp)/looks*h
-        if (look == looks) t = motion%t
+        t = first%t + real(look, wp)/looks*h
+        if (look == looks) t = last%t
         call polynomial%evaluate(t, at, rate, acceleration)
-        margin = abs(at(1) - cubic_between(gap(1), h*gap_rate(1), gap(2), h*gap_rate(2), (t - from)/h))
+        margin = abs(at(1) - cubic_between(gap(1), h*gap_rate(1), gap(2), h*gap_rate(2), (t - first%t)/h))
         at = sign_of_gap*at
         rate = sign_of_gap*rate*sign(1.0_wp, h)
         if (before_rate < 0.0_wp .and. rate(1) > 0.0_wp .and. at(1) - abs(rate(1)*(t - before)) < margin) then

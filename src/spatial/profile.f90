@@ -24,6 +24,7 @@ module mech9_profile
   contains
     procedure :: prepare
     procedure :: foot
+    procedure :: neighbours
     procedure :: normal_at_end
     procedure :: stands_out
     procedure :: trace
@@ -35,6 +36,7 @@ module mech9_profile
     real(wp) :: normal(2) = 0.0_wp   !< of the profile at the foot, towards the free side
     real(wp) :: tangent(2) = 0.0_wp  !< at right angles to the normal, which turned to the right
     real(wp) :: turning = 0.0_wp     !< rate of the normal along the tangent per velocity of the point along it [1/m]
+    integer :: part = 0              !< number of its part among those of all pieces; negative: minus the number of the corner or end
   end type foot_type
 
   !> Sine of the angle up to which two pieces that meet are one smooth curve: a tangent through few points errs by so much.
@@ -73,7 +75,7 @@ contains
     real(wp), intent(in) :: point(2)          !< in the plane of the profile [m]
     type(foot_type) :: foot
     real(wp) :: distances(size(self%reach)), nearest, bound, u, distance
-    integer :: i, piece, part
+    integer :: i, piece, part, number
 
     do i = 1, size(distances)
       distances(i) = hypot(point(1) - self%middle(1, i), point(2) - self%middle(2, i))
@@ -82,19 +84,38 @@ contains
     nearest = huge(1.0_wp)
     piece = 0
     part = 0
+    number = 0
     u = 0.0_wp
     do i = 1, size(distances)
       if (distances(i) - self%reach(i) > bound) cycle
+      distance = nearest
       call search_part(self%pieces(self%of_piece(i)), self%of_piece(i), self%of_part(i), point, nearest, piece, part, u)
+      if (nearest < distance) number = i
       bound = min(bound, nearest)
     end do
     call search_corners(self, point, nearest, i, distance)
     if (i > 0) then
       foot = foot_on_corner(self, i, point)
+      foot%part = -i
     else
       foot = foot_on_piece(self, self%pieces(piece), part, u, point)
+      foot%part = number
     end if
   end function foot
+
+  !> Whether two feet are on the same corner, or on one part or two of a smooth piece that follow each other.
+  pure logical function neighbours(self, first, second)
+    class(profile_type), intent(in) :: self   !< prepared
+    integer, intent(in) :: first              !< `part` of one foot
+    integer, intent(in) :: second             !< `part` of the other one
+
+    neighbours = first == second
+    if (neighbours .or. min(first, second) < 1) return
+    neighbours = self%of_piece(first) == self%of_piece(second) .and. abs(first - second) == 1
+    ! in a smooth closed curve the first part follows the last one
+    if (self%closed .and. size(self%pieces) == 1) &
+      neighbours = neighbours .or. abs(first - second) == size(self%of_part) - 1 .and. self%pieces(1)%closed
+  end function neighbours
 
   !> Search one part of a piece for a nearer foot at which the curve is at right angles to the line to the point.
   pure subroutine search_part(curve, number, k, point, nearest, piece, part, u)

@@ -3,6 +3,7 @@ same surfaces as planes and spheres; curves that a ball cannot follow.
 
 Compares the program with itself: a path and a plane, a sphere, a pair along the same path; a path in another frame."""
 import json
+import re
 from math import acos, cos, hypot, pi, sin, sqrt
 
 import numpy as np
@@ -318,3 +319,96 @@ def test_a_curve_in_space(checks, mech9d, tmp_path):
     (tmp_path / 'path.dat').write_text('0 0 0\n1 0 0.5\n', encoding='utf-8')
     _, _, said = go(mech9d, tmp_path, particle(0.0, 5.0) + CONTACT + ", side='left' /\n", 1, code=3)
     checks.true('the path of a contact lies in a plane; give x and y in each line' in said, 'told', said)
+
+
+FREE_FLIGHT = PARTICLE.split('&gravity')[0]
+
+
+def fly(program, folder, start, velocity, contact, end):
+    """Code, times of impacts or the time at which drives fail, and standard error, of a straight flight with two outputs."""
+    if 'mech9k' in str(program):
+        moves = ''.join(f"&drive coordinate={k + 1}, kind='polynomial', coefficients={start[k]!r},{velocity[k]!r} /\n" for k in (0, 1))
+    else:
+        moves = ''.join(f'&initial coordinate={k + 1}, position={start[k]!r}, velocity={velocity[k]!r} /\n' for k in (0, 1))
+    path, report = folder / 'fly.nml', folder / 'fly.json'
+    path.write_text(f"{FREE_FLIGHT}{moves}&contact point='P', kind='path', file='path.dat', {contact} /\n&time end={end!r}, intervals=1 /\n",
+                    encoding='utf-8')
+    done = run(program, path, '--table', folder / 'fly.dat', '--report', report)
+    times = [event['time'] for event in json.loads(report.read_text()).get('events', [])]
+    failed = re.search('(?:into each other|behind its path) at t = ([0-9.e+-]+) s', done.stderr)
+    return done.returncode, times + [float(failed.group(1))] if failed else times, done.stderr
+
+
+@pytest.mark.parametrize('program', ('mech9d', 'mech9k'))
+def test_flight_past_a_blade(checks, request, tmp_path, program):
+    """A ball that crosses a thin blade within one step of the integration, or between two outputs, meets its side, or its edge, or passes
+    by."""
+    half, r = 0.005, 0.02
+    write_path(tmp_path, [(-half, -1), (half, -1), None, (half, 1), None, (-half, 1), None, (-half, -1)])
+    found = request.getfixturevalue(program)
+    contact = f"side='outside', radius={r}"
+    for x in (-2.2, -3, -5):
+        _, times, _ = fly(found, tmp_path, (x, 0.1), (8.0, 0.3), contact, 2)
+        checks.near(times[:1], [(-x - half - r)/8], 1e-12, f'the side, from {x}')
+    _, times, _ = fly(found, tmp_path, (-3.0, 1.01), (8.0, 0.0), contact, 2)
+    # drives fail with ten digits
+    checks.near(times[:1], [(3 - half - sqrt(r**2 - 0.01**2))/8], 1e-9, 'the edge')
+    code, times, _ = fly(found, tmp_path, (-3.0, 1.021), (8.0, 0.0), contact, 2)
+    checks.equal([code, times], [0, []], 'it passes the edge')
+
+
+@pytest.mark.parametrize('program', ('mech9d', 'mech9k'))
+def test_flight_from_behind(checks, request, tmp_path, program):
+    """A ball that comes through an open path from behind within one step, and is far in front of it at the end, is told."""
+    write_path(tmp_path, [(-1, 0), (0, 0), None, (0, -1)])
+    found = request.getfixturevalue(program)
+    code, times, said = fly(found, tmp_path, (-0.3, -2.0), (0.0, 8.0), "side='left', radius=0.02", 2)
+    checks.equal(code, 6, 'it is refused')
+    # the end of the path is the nearest point up to y = -1
+    # within a hundredth of the length of a step
+    checks.near(times, [1/8], 1e-2, 'when')
+    checks.true('it is 0.32 m within' in said or 'would be 0.32 m within' in said, 'how far', said)
+
+
+def distance_from_side(p, a, b):
+    """Distance of a point from a straight side."""
+    along = np.subtract(b, a)
+    u = np.clip(np.dot(np.subtract(p, a), along)/np.dot(along, along), 0, 1)
+    return np.linalg.norm(np.subtract(p, a) - u*along)
+
+
+def first_touch(corners, start, velocity, radius, end):
+    """Time at which a ball first touches a polygon, by steps of its distance over its speed; None: not until the end."""
+    t, speed = 0.0, np.linalg.norm(velocity)
+    while t < end:
+        p = np.add(start, np.multiply(t, velocity))
+        gap = min(distance_from_side(p, corners[i - 1], corners[i]) for i in range(len(corners))) - radius
+        if gap < 1e-13:
+            return t
+        t += gap/speed
+    return None
+
+
+@pytest.mark.parametrize('seed', range(30))
+def test_flight_at_a_polygon(checks, request, tmp_path, seed):
+    """A fast ball meets a polygon with narrow tips first where its distance from the sides is its radius, or nowhere."""
+    draw = np.random.default_rng(seed)
+    angles = 2*pi*(np.arange(7) + draw.uniform(0, 0.8, 7))/7
+    corners = [tuple(float(x) for x in draw.choice([0.05, 0.3, 1])*np.array([cos(a), sin(a)])) for a in angles]
+    middle = tuple(float(x) for x in np.add(corners[0], corners[-1])/2)
+    points = [middle]
+    for corner in corners:
+        points += [corner, None]
+    write_path(tmp_path, points + [middle])
+    radius, speed, far, towards = float(draw.choice([0.01, 0.1])), float(draw.choice([1, 30])), draw.uniform(1.5, 6), draw.uniform(0, 2*pi)
+    start = [far*cos(towards), far*sin(towards)]
+    towards += pi + draw.uniform(-0.8, 0.8)/far
+    velocity, end = [speed*cos(towards), speed*sin(towards)], 2.2*far/speed
+    expected = first_touch(corners, start, velocity, radius, end)
+    program = request.getfixturevalue('mech9k' if seed % 2 else 'mech9d')
+    _, times, said = fly(program, tmp_path, start, velocity, f"side='outside', radius={radius}, restitution=1", end)
+    if expected is None:
+        checks.equal(times, [], 'it meets nothing')
+    else:
+        # drives fail with ten digits; the reference stops 1e-13 m before it touches
+        checks.near(times[:1], [expected], 1e-8*end, 'when it meets the polygon' + said)

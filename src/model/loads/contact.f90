@@ -2,8 +2,9 @@
 !> friction.
 !>
 !> A ball of radius r about the point P meets a plane through O with the normal n at the gap g = n . (P - O) - r, and a ball of radius R
-!> about O at g = |P - O| - r - R. A profile is a curve in a plane, along whose axis the surface goes on; its gap counts in the plane. The bodies touch at C = P - r n. The penetration d = -g of a compliant contact gives the force
-!> d^exponent (stiffness + damping dd/dt), as long as it pushes, as at compliant stops.
+!> about O at g = |P - O| - r - R. A profile is a curve in a plane, along whose axis the surface goes on; its gap counts in the plane. The
+!> bodies touch at C = P - r n. The penetration d = -g of a compliant contact gives the force d^exponent (stiffness + damping dd/dt), as
+!> long as it pushes, as at compliant stops.
 module mech9_contact
   use mech9_kinds, only: wp
   use mech9_error, only: place_type
@@ -12,11 +13,14 @@ module mech9_contact
   use mech9_motion_view, only: link_motion_type
   implicit none
   private
-  public :: contact_type, contact_place_type, plane_surface, ball_surface, profile_surface, surface_words
+  public :: contact_type, contact_place_type, is_beyond_reach, plane_surface, ball_surface, profile_surface, surface_words
 
   !> The kinds of surfaces, and their names.
   integer, parameter :: plane_surface = 1, ball_surface = 2, profile_surface = 3
   character(len=6), parameter :: surface_words(3) = [character(len=6) :: 'plane', 'sphere', 'path']
+
+  !> A way in a short time is no longer than this times the time and the greater of both speeds at its ends.
+  real(wp), parameter :: longer_way = 1.25_wp
 
   !> A contact between two links.
   type :: contact_type
@@ -42,6 +46,7 @@ module mech9_contact
   contains
     procedure :: has_friction
     procedure :: find_place
+    procedure :: is_smooth_between
     procedure :: acceleration
     procedure :: normal_force
     procedure :: energy
@@ -56,6 +61,8 @@ module mech9_contact
     real(wp) :: at(3) = 0.0_wp          !< point at which the bodies touch [m]
     real(wp) :: slip(3) = 0.0_wp        !< velocity of the ball there against the surface, the rate of the gap in it [m/s]
     real(wp) :: speed = 0.0_wp          !< sum of the speeds from which this velocity comes [m/s]
+    real(wp) :: passing_speed = 0.0_wp  !< speed of the ball's centre as seen from the surface's link, along the plane of a profile [m/s]
+    integer :: part = 0                 !< of a profile: the part with the nearest point, see foot_type; 0: a smooth surface
   contains
     procedure :: gap_rate
     procedure :: tangents
@@ -110,16 +117,43 @@ contains
     type(link_motion_type), intent(in) :: surface         !< motion of the surface's link
     type(contact_place_type), intent(inout) :: place      !< gets gap, normal and rate of the normal
     type(foot_type) :: foot
-    real(wp) :: point(3), tangent(3)
+    real(wp) :: point(3), tangent(3), flat(3)
 
     point = turn_back(self%axes, turn_back(surface%r, d))
+    flat = turn_back(self%axes, turn_back(surface%r, v))
+    place%passing_speed = norm2(flat(:2))
     foot = self%profile%foot(point(:2))
+    place%part = foot%part
     place%gap = foot%distance - self%radius
     if (is_hidden(self, foot, point(:2))) place%gap = -foot%distance
     place%normal = surface%fixed_components(turn(self%axes, [foot%normal, 0.0_wp]))
     tangent = surface%fixed_components(turn(self%axes, [foot%tangent, 0.0_wp]))
     place%normal_rate = cross(surface%omega, place%normal) + foot%turning*dot_product(v, tangent)*tangent
   end subroutine find_foot
+
+  !> Whether the gap changes smoothly between two near places, as far as can be told from both: the nearest points lie on one part of a
+  !> smooth piece or on two that follow each other, or the ball is too slow to come near another part.
+  pure logical function is_smooth_between(self, first, second, time) result(is_smooth)
+    class(contact_type), intent(in) :: self               !< the contact
+    type(contact_place_type), intent(in) :: first         !< the place at one time
+    type(contact_place_type), intent(in) :: second        !< the place at the other one
+    real(wp), intent(in) :: time                          !< between both [s]
+
+    is_smooth = self%surface /= profile_surface
+    if (is_smooth) return
+    is_smooth = self%profile%neighbours(first%part, second%part) .or. &
+                ((first%gap < 0.0_wp .eqv. second%gap < 0.0_wp) .and. is_beyond_reach(first, second, time))
+  end function is_smooth_between
+
+  !> Whether a ball that is as near to a profile as at two places is too slow to touch it between both. A distance from a curve changes no
+  !> faster than the point moves.
+  pure logical function is_beyond_reach(first, second, time)
+    type(contact_place_type), intent(in) :: first         !< the place at one time
+    type(contact_place_type), intent(in) :: second        !< the place at the other one
+    real(wp), intent(in) :: time                          !< between both [s]
+
+    is_beyond_reach = abs(first%gap) + abs(second%gap) > longer_way*abs(time)*max(first%passing_speed, second%passing_speed)
+  end function is_beyond_reach
 
   !> Whether a point outside the whole curve sees a side from behind, through the body, where it cannot touch.
   pure logical function is_hidden(self, foot, point)

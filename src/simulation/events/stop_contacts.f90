@@ -9,10 +9,11 @@ module mech9_stop_contacts
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
+  use mech9_smooth_parts, only: gap_look_type
   use mech9_contact_motion, only: contact_motion_type, place_of_contact, acceleration_of_contact
   implicit none
   private
-  public :: stop_contact_type, stop_contacts_type, find_contacts, gap_motion, gap_acceleration
+  public :: stop_contact_type, stop_contacts_type, find_contacts, gap_motion, gap_acceleration, look_at_gap
 
   !> One end of a stop, or one contact of links.
   type :: stop_contact_type
@@ -40,7 +41,9 @@ module mech9_stop_contacts
     type(stop_contact_type), allocatable :: ends(:)
     real(wp), allocatable :: gap(:)      !< (ends) gaps at the start of the step [rad, m]
     real(wp), allocatable :: rate(:)     !< (ends) their rates there, those of the last evaluation before it [rad/s, m/s]
+    type(contact_place_type), allocatable :: place(:)   !< (ends) those of contacts of links there
     real(wp), allocatable :: force(:)    !< (ends) forces of those that are held there, positive while they push [N m, N]
+    integer :: behind = 0                !< number of the end whose curve the ball is behind at the event that lies ahead; 0: none
     integer :: corrections = 0           !< how often the time of the event that lies ahead was corrected
   contains
     procedure :: note
@@ -100,16 +103,31 @@ contains
     type(state_type), intent(in) :: state            !< the state
     type(stop_contact_type), intent(in) :: end       !< the end
     real(wp) :: motion(2)
-    type(contact_place_type) :: place
+    type(gap_look_type) :: look
+
+    look = look_at_gap(mechanism, plan, state, end)
+    motion = [look%gap, look%rate]
+  end function gap_motion
+
+  !> The gap in a state, its rate, and the place of a contact of links; no acceleration. It needs the velocities of links.
+  pure function look_at_gap(mechanism, plan, state, end) result(look)
+    type(mechanism_type), intent(in) :: mechanism    !< the mechanism
+    type(plan_type), intent(in) :: plan              !< its plan
+    type(state_type), intent(in) :: state            !< the state
+    type(stop_contact_type), intent(in) :: end       !< the end
+    type(gap_look_type) :: look
     type(link_motion_type) :: ball, surface
 
+    look%t = state%t
     if (end%contact == 0) then
-      motion = [end%gap(state%q(end%coordinate)), end%direction*state%dq(end%coordinate)]
+      look%gap = end%gap(state%q(end%coordinate))
+      look%rate = end%direction*state%dq(end%coordinate)
     else
-      call place_of_contact(mechanism%contacts(end%contact), plan, state, place, ball, surface)
-      motion = [place%gap, place%gap_rate()]
+      call place_of_contact(mechanism%contacts(end%contact), plan, state, look%place, ball, surface)
+      look%gap = look%place%gap
+      look%rate = look%place%gap_rate()
     end if
-  end function gap_motion
+  end function look_at_gap
 
   !> The second derivative of the gap in a state with all accelerations [rad/s^2, m/s^2].
   pure real(wp) function gap_acceleration(mechanism, plan, state, end) result(acceleration)
@@ -144,6 +162,7 @@ contains
     end do
     allocate (contacts%ends(n))
     allocate (contacts%gap(n), contacts%rate(n), contacts%force(n), source=0.0_wp)
+    allocate (contacts%place(n))
     n = 0
     do i = 1, size(mechanism%stops)
       do end = 1, 2
@@ -168,13 +187,14 @@ contains
     type(mechanism_type), intent(in) :: mechanism      !< the mechanism
     type(plan_type), intent(in) :: plan                !< its plan
     type(state_type), intent(in) :: state              !< the state there; rates of dependent coordinates may be a little older
-    real(wp) :: motion(2)
+    type(gap_look_type) :: look
     integer :: i
 
     do i = 1, size(self%ends)
-      motion = gap_motion(mechanism, plan, state, self%ends(i))
-      self%gap(i) = motion(1)
-      self%rate(i) = motion(2)
+      look = look_at_gap(mechanism, plan, state, self%ends(i))
+      self%gap(i) = look%gap
+      self%rate(i) = look%rate
+      self%place(i) = look%place
       self%force(i) = pushing_force(mechanism, plan, state, self%ends(i))
     end do
   end subroutine note
@@ -245,7 +265,8 @@ contains
     type(plan_type), intent(in) :: plan             !< its plan
     type(state_type), intent(in) :: state           !< positions at the end of the step, with the rates of the last evaluation
     real(wp), intent(in) :: h                       !< length of the step, with its sign [s]
-    real(wp) :: values(4), now(2)
+    type(gap_look_type) :: now
+    real(wp) :: values(4)
     integer :: i
 
     in_doubt = .true.
@@ -253,10 +274,12 @@ contains
       associate (end => self%ends(i))
         if (end%held) cycle
         ! the polynomial at the ends of the step and where its control points lie: it does not leave their hull
-        now = gap_motion(mechanism, plan, state, end)
-        values = [self%gap(i), self%gap(i) + h*self%rate(i)/3.0_wp, now(1) - h*now(2)/3.0_wp, now(1)]
+        now = look_at_gap(mechanism, plan, state, end)
+        values = [self%gap(i), self%gap(i) + h*self%rate(i)/3.0_wp, now%gap - h*now%rate/3.0_wp, now%gap]
         if (end%closed) values = -values
         if (minval(values) < doubtful_part*(maxval(values) - minval(values)) + 1.0e-9_wp*end%unit(plan)) return
+        if (end%is_stop()) cycle
+        if (.not. mechanism%contacts(end%contact)%is_smooth_between(self%place(i), now%place, h)) return
       end associate
     end do
     in_doubt = .false.
