@@ -286,16 +286,17 @@ contains
   end subroutine miscount
 
   !> Note an answer to the current question. Other questions may follow from it.
-  pure subroutine note(self, text)
+  pure subroutine note(self, text, written)
     class(interview_type), intent(inout) :: self  !< draft, questions and the current question
     character(len=*), intent(in) :: text          !< the answer as a data file writes it
+    character(len=*), intent(in), optional :: written   !< with names of links and pairs in quotes, not numbers
     type(question_type) :: question
     logical :: with_forces, was_known
 
     question = self%due()
     with_forces = wants_forces(self%draft)
     was_known = self%outline%structure_known
-    call self%draft%give(trim(group_table(question%group_row)%name), question%place, entry_name(question), text)
+    call self%draft%give(trim(group_table(question%group_row)%name), question%place, entry_name(question), text, written)
     call self%refresh(label_of(question))
     if (wants_forces(self%draft) .and. .not. with_forces) call go_on_with_masses(self)
     ! pairs that a joint leaves need their links before the conversation goes on

@@ -2,7 +2,9 @@
 module mech9_summary
   use mech9_text, only: to_text, lower
   use mech9_grammar, only: group_table, find_group_row, words_of
-  use mech9_draft, only: draft_type, integer_of, unquoted
+  use mech9_part_names, only: part_names_type
+  use mech9_draft, only: draft_type, integer_of
+  use mech9_draft_names, only: names_in_draft, shown_text
   use mech9_draft_joints, only: number_in, pair_with
   use mech9_paragraph, only: print_paragraph
   use mech9_topics, only: is_numbered
@@ -21,10 +23,12 @@ contains
     integer, intent(in) :: unit            !< number of the output unit
     type(draft_type), intent(in) :: draft  !< groups and names with their values as text
     character(len=:), allocatable :: line, piece
+    type(part_names_type) :: names
     integer :: i, j, number
 
     number = 0
     piece = ''
+    names = names_in_draft(draft)
     do i = 1, size(draft%groups)
       ! a group with nothing but its coordinate is not printed
       if (all([(is_hidden(draft, i, j), j=1, size(draft%groups(i)%entries))])) cycle
@@ -33,7 +37,7 @@ contains
         if (is_hidden(draft, i, j)) cycle
         number = number + 1
         associate (entry => draft%groups(i)%entries(j))
-          piece = '  ['//to_text(number)//'] '//entry%name//' '//unquoted(entry%text)
+          piece = '  ['//to_text(number)//'] '//entry%name//' '//shown_text(draft%groups(i)%name, entry, names)
         end associate
         if (len(line) + len(piece) > line_width .and. len(line) > indent) then
           call print_paragraph(unit, trim(adjustl(line)), verify(line, ' ') - 1)

@@ -73,7 +73,7 @@ contains
     if (problem == '') call hold_against_rest(conversation, question, text, problem)
     if (problem == '') call count_independent(conversation, text, problem)
     if (problem == '') then
-      call keep_answer(conversation, text)
+      call keep_answer(conversation, text, names_meant(conversation%interview%draft, item_table(question%row), converted))
     else
       call conversation%say(problem)
     end if
@@ -149,6 +149,31 @@ contains
     end do
   end function numbers_meant
 
+  !> The words of an answer, with quotes around the names of links and pairs that stand for numbers; empty for other answers.
+  pure function names_meant(draft, row, line) result(text)
+    type(draft_type), intent(in) :: draft        !< the data file so far
+    type(item_row_type), intent(in) :: row       !< of the name that is asked for
+    character(len=*), intent(in) :: line         !< the answer, without blanks around it
+    character(len=:), allocatable :: text
+    integer :: first, last, kind
+
+    text = ''
+    kind = refers_to(trim(row%group), trim(row%name))
+    if (kind == 0) return
+    last = 0
+    do while (last < len(line))
+      first = last + 1
+      last = first + scan(line(first:)//',', ' ,') - 1
+      if (last == first) cycle
+      if (text /= '') text = text//', '
+      if (number_called(draft, kind, line(first:last - 1)) == line(first:last - 1)) then
+        text = text//line(first:last - 1)
+      else
+        text = text//''''//line(first:last - 1)//''''
+      end if
+    end do
+  end function names_meant
+
   !> The number of the link or the coordinate that a word names, with quotes or without; the word itself where it names none.
   pure function number_called(draft, kind, word) result(number)
     type(draft_type), intent(in) :: draft        !< the data file so far
@@ -217,11 +242,12 @@ contains
   end subroutine count_independent
 
   !> Note an answer, and go on to the next question.
-  subroutine keep_answer(conversation, text)
+  subroutine keep_answer(conversation, text, written)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     character(len=*), intent(in) :: text                     !< the answer as a data file writes it
+    character(len=*), intent(in), optional :: written        !< with names of links and pairs in quotes, not numbers
 
-    call conversation%interview%note(text)
+    call conversation%interview%note(text, written)
     call tell_dropped(conversation)
     call move_on(conversation)
   end subroutine keep_answer

@@ -12,7 +12,8 @@ module mech9_draft
   !> One name and its values.
   type :: entry_type
     character(len=:), allocatable :: name    !< in lower case, with its subscript if it has one: c(1,:)
-    character(len=:), allocatable :: text    !< its values, as a data file writes them
+    character(len=:), allocatable :: text    !< its values, as a data file writes them; numbers for names of links and pairs
+    character(len=:), allocatable :: written !< the values as the user wrote them, where these are names; not allocated: none is
   end type entry_type
 
   !> One group.
@@ -219,19 +220,26 @@ contains
   end subroutine move_group
 
   !> Set the value of a name, in the place of an earlier one. Add the group if it is not there yet.
-  pure subroutine give(self, group, place, name, text)
+  pure subroutine give(self, group, place, name, text, written)
     class(draft_type), intent(inout) :: self  !< groups and names with their values as text
     character(len=*), intent(in) :: group     !< name of the group
     character(len=*), intent(in) :: name      !< name with its subscript
     character(len=*), intent(in) :: text      !< values as a data file writes them
     integer, intent(in) :: place              !< place among the groups of that name; at most one more than there are
+    character(len=*), intent(in), optional :: written   !< the values with names of links and pairs in quotes, not numbers
     integer :: i, number
 
     if (place > self%count_of(group)) call self%add(group)
     i = self%find(group, place)
     number = entry_number(self%groups(i), name)
     if (number == 0) call add_entry(self%groups(i), name, number)
-    self%groups(i)%entries(number)%text = text
+    associate (entry => self%groups(i)%entries(number))
+      ! values that stay the same stay as they were written
+      if (entry%text /= text .and. allocated(entry%written)) deallocate (entry%written)
+      entry%text = text
+      if (.not. present(written)) return
+      if (scan(written, '''"') > 0) entry%written = written
+    end associate
   end subroutine give
 
   !> Add an entry in the order of the table of names. Rows of a matrix stand in the order of their numbers.
@@ -251,6 +259,7 @@ contains
       associate (to => longer(merge(i, i + 1, i < number)))
         call move_alloc(group%entries(i)%name, to%name)
         call move_alloc(group%entries(i)%text, to%text)
+        call move_alloc(group%entries(i)%written, to%written)
       end associate
     end do
     longer(number)%name = name
@@ -301,6 +310,7 @@ contains
         if (j == number) cycle
         call move_alloc(entries(j)%name, shorter(merge(j, j - 1, j < number))%name)
         call move_alloc(entries(j)%text, shorter(merge(j, j - 1, j < number))%text)
+        call move_alloc(entries(j)%written, shorter(merge(j, j - 1, j < number))%written)
       end do
     end associate
     call move_alloc(shorter, self%groups(i)%entries)

@@ -60,7 +60,8 @@ contains
     do i = 1, size(group%items)
       associate (item => group%items(i))
         if (any(item%values%kind == value_bad) .or. (group%name == 'structure' .and. item%name == 'c')) cycle
-        call draft%give(group%name, place, item%name, values_text(document%source%text, item%values))
+        call draft%give(group%name, place, item%name, values_text(document%source%text, item%values), &
+                        written_text(document%source%text, item))
       end associate
     end do
   end subroutine take_group
@@ -119,6 +120,22 @@ contains
     end do
     text = join(words, ', ')
   end function values_text
+
+  !> Values as they are written, where names of links or pairs are among them that stand for numbers; empty where there are none.
+  pure function written_text(source_text, item) result(text)
+    character(len=*), intent(in) :: source_text  !< text in which the values stand
+    type(item_type), intent(in) :: item          !< name with its values
+    character(len=:), allocatable :: text
+    type(string_type) :: words(size(item%values))
+    integer :: i
+
+    text = ''
+    if (any(item%values%kind /= value_integer .or. item%values%times > 1)) return
+    do i = 1, size(words)
+      words(i)%text = source_text(item%values(i)%span%first:item%values(i)%span%last)
+    end do
+    text = join(words, ', ')
+  end function written_text
 
   !> Find the comment lines directly above a byte. With `to_the_top`, find those from the top of the file that stand
   !> above these and a blank line.

@@ -2,7 +2,9 @@
 module mech9_draft_text
   use mech9_text, only: string_type, starts_with
   use mech9_grammar, only: group_table, find_group_row
+  use mech9_part_names, only: part_names_type
   use mech9_draft, only: draft_type, draft_group_type
+  use mech9_draft_names, only: names_in_draft, text_with_names
   implicit none
   private
   public :: draft_text_type, write_draft, locate
@@ -29,6 +31,7 @@ contains
     type(draft_type), intent(in) :: draft          !< groups and names with their values as text
     character(len=*), intent(in) :: remark         !< comment line for the end of the text; empty: none
     type(draft_text_type), intent(out) :: written  !< text of the draft, with the place of each entry
+    type(part_names_type) :: names
     integer :: i, n
     character(len=:), allocatable :: before
 
@@ -40,11 +43,12 @@ contains
     allocate (character(len=len(draft%head) + 4096) :: written%text)
     call append(written, draft%head)
     before = ''
+    names = names_in_draft(draft)
     do i = 1, size(draft%groups)
       if (draft%groups(i)%name /= before) call begin_kind(draft%groups(i), written)
       before = draft%groups(i)%name
       call append(written, draft%groups(i)%comment)
-      call write_group(draft%groups(i), i, written)
+      call write_group(draft%groups(i), i, names, written)
     end do
     if (remark /= '') call append(written, line_end//remark//line_end)
     written%text = written%text(:written%used)
@@ -77,15 +81,19 @@ contains
   end subroutine append
 
   !> Append a group to the text, and note the ranges of bytes.
-  pure subroutine write_group(group, number, written)
+  pure subroutine write_group(group, number, names, written)
     type(draft_group_type), intent(in) :: group      !< the group
     integer, intent(in) :: number                    !< index of the group in the draft
+    type(part_names_type), intent(in) :: names       !< of links and pairs
     type(draft_text_type), intent(inout) :: written  !< text to which the group is appended, with the place of each entry
     type(string_type) :: parts(size(group%entries))
     character(len=:), allocatable :: separator, equals
     integer :: i, whole, length
 
-    length = len(group%name) + 4 + sum([(len(group%entries(i)%name) + len(group%entries(i)%text) + 3, i=1, size(parts))])
+    do i = 1, size(parts)
+      parts(i)%text = text_with_names(group%name, group%entries(i), names)
+    end do
+    length = len(group%name) + 4 + sum([(len(group%entries(i)%name) + len(parts(i)%text) + 3, i=1, size(parts))])
     separator = line_end//'  '
     equals = ' = '
     if (length <= longest_line .and. .not. is_matrix(group)) then
@@ -93,7 +101,7 @@ contains
       equals = '='
     end if
     do i = 1, size(parts)
-      parts(i)%text = group%entries(i)%name//equals//group%entries(i)%text
+      parts(i)%text = group%entries(i)%name//equals//parts(i)%text
     end do
     whole = written%count + 1
     call note(written, number, 0, written%used + 1)

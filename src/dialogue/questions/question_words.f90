@@ -7,6 +7,7 @@ module mech9_question_words
   use mech9_units, only: units_type, units_of_words
   use mech9_answer_units, only: part_length
   use mech9_draft, only: draft_type, unquoted
+  use mech9_draft_names, only: names_in_draft, shown_text
   use mech9_topics, only: groups_of_topic, can_be_left_out
   use mech9_compound_joint, only: compound_kinds
   use mech9_draft_joints, only: kind_in, number_in, coordinates_of_pair, kind_of_coordinate
@@ -63,6 +64,11 @@ contains
       end if
       default%noted = default%text /= '' .and. .not. draft%has(group, question%place, name)
       if (default%text /= '') default%shown = unquoted(default%text)
+      if (draft%has(group, question%place, name) .and. .not. question%is_new) then
+        associate (entries => draft%groups(draft%find(group, question%place))%entries)
+          default%shown = shown_text(group, entries(draft%find_entry(group, question%place, name)), names_in_draft(draft))
+        end associate
+      end if
       if (row%type == 'logical') default%shown = switch_word(default%shown)
     end associate
   end function default_of
