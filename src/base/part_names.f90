@@ -223,7 +223,7 @@ contains
       found = at + found - 1
       at = found + len(word)
       if (found > 1) then
-        if (scan(text(found - 1:found - 1), '&_=(''abcdefghijklmnopqrstuvwxyz') > 0) cycle
+        if (scan(text(found - 1:found - 1), '&_=''abcdefghijklmnopqrstuvwxyz') > 0) cycle
       end if
       if (at > len(text)) return
       if (text(at:at) == 's') at = at + 1

@@ -14,6 +14,7 @@ module mech9_checking
   use mech9_explained_assembly, only: assemble_model
   use mech9_start_way_text, only: start_way_text
   use mech9_task, only: task_type
+  use mech9_named_words, only: named_number
   use mech9_structure_text, only: print_mobility_report
   use mech9_draft_text, only: draft_text_type
   use mech9_draft_check, only: fault_type, read_draft, faults_of
@@ -110,13 +111,13 @@ contains
 
     text = 'Put together at the start with'
     do k = 1, size(model%mechanism%pairs)
-      text = text//' q'//to_text(k)//' = '//to_text(start%q(k)/unit_of(model%mechanism, k))
+      text = text//' q'//named_number(model%mechanism%names%coordinates, k)//' = '//to_text(start%q(k)/unit_of(model%mechanism, k))
       if (k < size(model%mechanism%pairs)) text = text//','
     end do
     text = text//'.'
     if (size(plan%closures) > 0) text = text//' (Another assembly? Go back and give guesses.)'
     call conversation%say(text)
     call report_mobility(model%mechanism, plan, start, report)
-    call print_mobility_report(error_unit, model%mechanism%structure, plan, report)
+    call print_mobility_report(error_unit, model%mechanism, plan, report)
   end subroutine tell_start
 end module mech9_checking

@@ -50,7 +50,7 @@ contains
     if (.not. present(text)) return
     call begin_text(unit, err)
     if (allocated(err)) return
-    call print_mobility_report(unit, model%mechanism%structure, plan, report)
+    call print_mobility_report(unit, model%mechanism, plan, report)
     call print_given(unit, model, .true.)
     call print_start(unit, model, plan, start, way)
     call end_text(unit, text)

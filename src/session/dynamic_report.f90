@@ -7,6 +7,7 @@ module mech9_dynamic_report
   use mech9_number_lists, only: same_numbers
   use mech9_row_layout, only: write_coefficients, take_changes, write_events
   use mech9_hdf5_sink, only: hdf5_sink_type
+  use mech9_named_words, only: with_names
   use mech9_plan, only: plan_type
   use mech9_law_notes, only: print_jumps
   use mech9_effect_notes, only: print_effects
@@ -15,7 +16,7 @@ module mech9_dynamic_report
   use mech9_integrator, only: integration_statistics_type
   use mech9_simulation, only: coordinate_change_type
   use mech9_motion_event, only: motion_events_type
-  use mech9_event_words, only: event_sentence
+  use mech9_event_words, only: event_sentence, with_impulses_in_units
   use mech9_free_simulation, only: free_simulation_type
   use mech9_run_words, only: duration, each
   use mech9_energy_text, only: words_of_energy_change
@@ -67,9 +68,9 @@ contains
       to_text(simulation%conditioning%least, 3)//' at t = '//to_text(simulation%conditioning%t, 6)//' s'
     do i = 1, size(simulation%coordinate_changes)
       write (unit, '(a)') 't = '//to_text(simulation%coordinate_changes(i)%t, 8)//' s: '// &
-        change_words(simulation%coordinate_changes, i)
+        with_names(simulation%model%mechanism%names, change_words(simulation%coordinate_changes, i))
     end do
-    call print_events(unit, simulation%events)
+    call print_events(unit, with_impulses_in_units(simulation%events, simulation%model%mechanism))
     call print_jumps(unit, simulation%model)
     call print_effects(unit, simulation%model, .true.)
     if (table_path /= '' .and. table_path /= '-') write (unit, '(2a)') 'table: ', table_path

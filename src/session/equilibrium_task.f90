@@ -74,8 +74,8 @@ contains
     if (.not. allocated(err)) call search(options, model, rest, err)
     if (is_interruption(err) .and. size(rest%equilibria) > 0) call move_alloc(err, interruption)
     if (.not. allocated(err)) then
-      if (.not. options%has('quiet')) call print_findings(error_unit, options%number('starts', 0), rest%equilibria, &
-                                                            allocated(interruption))
+      if (.not. options%has('quiet')) call print_findings(error_unit, model%mechanism, options%number('starts', 0), &
+                                                          rest%equilibria, allocated(interruption))
       if (.not. options%has('quiet')) call print_left_out(error_unit, model%mechanism)
       if (.not. options%has('modes')) call judge_forces(options, model, rest%equilibria(1), forces)
       call write_results(options, model, rest%equilibria, forces, diagnostics%sources(1)%text, err, kept)
@@ -96,7 +96,7 @@ contains
     type(plan_type), intent(in) :: plan     !< its plan
 
     call print_structure(error_unit, model%mechanism%structure, model%problem%partition%vectors)
-    call print_mobility(error_unit, model%mechanism%structure, plan)
+    call print_mobility(error_unit, model%mechanism, plan)
     call print_plan(error_unit, model%mechanism, plan, requested_by_results(model%mechanism, model%request%output, .true.))
   end subroutine print_making
 

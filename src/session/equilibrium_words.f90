@@ -1,5 +1,8 @@
 !> Sentences about positions of equilibrium.
 module mech9_equilibrium_words
+  use mech9_named_words, only: with_names
+  use mech9_mechanism, only: mechanism_type
+  use mech9_result_units, only: force_unit_name, si_force
   use mech9_kinds, only: wp, pi
   use mech9_text, only: to_text
   use mech9_counted, only: counted
@@ -11,8 +14,9 @@ module mech9_equilibrium_words
 contains
 
   !> Say what was found, in a line.
-  subroutine print_findings(unit, n_starts, list, interrupted)
+  subroutine print_findings(unit, mechanism, n_starts, list, interrupted)
     integer, intent(in) :: unit                     !< Fortran unit to write to
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     integer, intent(in) :: n_starts                 !< number of random starts
     type(equilibrium_type), intent(in) :: list(:)   !< the equilibria
     logical, intent(in) :: interrupted              !< the search was interrupted
@@ -22,7 +26,7 @@ contains
       write (unit, '(a)') counted(size(list), 'position')//' of equilibrium found so far, '// &
         to_text(count([(list(i)%is_stable, i=1, size(list))]))//' of them stable'
     else if (size(list) == 1) then
-      write (unit, '(a)') words_about(list(1))
+      write (unit, '(a)') with_names(mechanism%names, words_about(mechanism, list(1)))
     else
       write (unit, '(a)') counted(size(list), 'position')//' of equilibrium from the initial position and '// &
         counted(n_starts, 'random one')//', '// &
@@ -31,7 +35,8 @@ contains
   end subroutine print_findings
 
   !> An equilibrium in words, with the stops that bear a force.
-  function words_about(found) result(words)
+  function words_about(mechanism, found) result(words)
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(equilibrium_type), intent(in) :: found   !< the equilibrium
     character(len=:), allocatable :: words
     integer :: i
@@ -41,7 +46,11 @@ contains
     if (.not. allocated(found%resting%state%stop_force)) return
     associate (force => found%resting%state%stop_force)
       do i = 1, size(force)
-        if (abs(force(i)) > 0.0_wp) words = words//'; stop '//to_text(i)//' bears '//to_text(force(i), 5)
+        associate (k => mechanism%stops(i)%coordinate)
+          if (abs(force(i)) > 0.0_wp) words = words//'; stop '//to_text(i)//' bears '// &
+            to_text(force(i)/mechanism%units%size_of(trim(si_force(mechanism%pairs(k)%pair))), 5)//' '// &
+            trim(force_unit_name(mechanism, k))
+        end associate
       end do
     end associate
   end function words_about

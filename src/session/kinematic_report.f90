@@ -7,6 +7,7 @@ module mech9_kinematic_report
   use mech9_result_units, only: length_text
   use mech9_plan, only: plan_type
   use mech9_driven_motion, only: driven_motion_type
+  use mech9_named_words, only: with_names
   use mech9_block_names, only: words_of_block
   use mech9_law_notes, only: print_jumps
   use mech9_effect_notes, only: print_effects
@@ -57,7 +58,8 @@ contains
       '; largest closure '//trim(length_text(model%mechanism, driven%worst_closure, 3))
     if (driven%conditioning%block > 0) write (unit, '(a)') 'least conditioning '// &
       to_text(driven%conditioning%least, 3)//' at t = '//to_text(driven%conditioning%t, 6)//' s: '// &
-      words_of_block(plan%blocks(driven%conditioning%block)%chains, plan%blocks(driven%conditioning%block)%coordinates)
+      with_names(model%mechanism%names, words_of_block(plan%blocks(driven%conditioning%block)%chains, &
+                                                       plan%blocks(driven%conditioning%block)%coordinates))
     if (driven%crossings > 0) write (unit, '(a)') 'special positions passed: '//to_text(driven%crossings)// &
       ', each on the branch with continuous velocities'
     if (driven%steps >= outcome%rows) write (unit, '(a)') counted(driven%steps, 'step')//' to keep to the branch, and '// &

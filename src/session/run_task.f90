@@ -22,6 +22,7 @@ module mech9_run_task
   use mech9_structure_text, only: print_structure, print_mobility
   use mech9_held_text, only: print_held
   use mech9_parameter_text, only: print_parameter_notes
+  use mech9_event_words, only: with_impulses_in_units
   use mech9_plan_text, only: print_plan
   use mech9_force_text, only: print_undetermined, print_forceless
   use mech9_start_way_text, only: print_start_way
@@ -82,8 +83,8 @@ contains
       call list_run_facts(motion, outcome, facts)
       call results%write_facts(facts, diagnostics%code())
       if (associated(hdf5)) call report%write_end(hdf5, motion)
-      call results%mark_events(motion%simulation%events)
-      if (present(kept)) kept%events = motion%simulation%events
+      call results%mark_events(with_impulses_in_units(motion%simulation%events, model%mechanism))
+      if (present(kept)) kept%events = with_impulses_in_units(motion%simulation%events, model%mechanism)
       call end_run(options, pictures, model, source, results, diagnostics)
       if (.not. reported) return
       call compose_report(json, model, diagnostics, results%table_path, facts, run)
@@ -176,7 +177,7 @@ contains
     if (.not. options%has('quiet')) call print_parameter_notes(error_unit, model)
     if (.not. options%has('verbose')) return
     call print_structure(error_unit, model%mechanism%structure, model%problem%partition%vectors)
-    call print_mobility(error_unit, model%mechanism%structure, plan)
+    call print_mobility(error_unit, model%mechanism, plan)
     call print_plan(error_unit, model%mechanism, plan, requested)
   end subroutine announce
 

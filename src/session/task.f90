@@ -71,9 +71,9 @@ contains
 
     if (options%has('check')) then
       call report_mobility(model%mechanism, plan, start, report)
-      call print_mobility_report(output_unit, model%mechanism%structure, plan, report)
+      call print_mobility_report(output_unit, model%mechanism, plan, report)
     else if (options%has('plan')) then
-      call print_mobility(output_unit, model%mechanism%structure, plan)
+      call print_mobility(output_unit, model%mechanism, plan)
     end if
     if (options%has('plan')) call print_plan(output_unit, model%mechanism, plan, requested)
     if (options%has('branches')) call print_assemblies(output_unit, model%mechanism, plan, start, options%number('starts', 100))

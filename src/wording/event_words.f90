@@ -1,16 +1,34 @@
 !> Sentences about the events of a motion that is not smooth.
 module mech9_event_words
   use mech9_text, only: to_text
-  use mech9_motion_event, only: motion_event_type, event_impact, event_close, event_stick, event_slip, event_lift
+  use mech9_mechanism, only: mechanism_type
+  use mech9_result_units, only: impulse_unit_of
+  use mech9_motion_event, only: motion_event_type, motion_events_type, event_impact, event_close, event_stick, &
+    event_slip, event_lift
   implicit none
   private
-  public :: event_sentence
+  public :: event_sentence, with_impulses_in_units
 
 contains
 
+  !> The events of a motion with impulses in the units of the data file.
+  pure function with_impulses_in_units(events, mechanism) result(converted)
+    type(motion_events_type), intent(in) :: events      !< with impulses in N s or N m s
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(motion_events_type) :: converted
+    integer :: i
+
+    converted = events
+    do i = 1, events%count
+      associate (event => converted%items(i))
+        event%impulse = event%impulse/impulse_unit_of(mechanism, trim(event%group), event%number)
+      end associate
+    end do
+  end function with_impulses_in_units
+
   !> The sentence about an event, such as "stop 1 is hit, impulse -1.579".
   pure function event_sentence(event) result(text)
-    type(motion_event_type), intent(in) :: event   !< the event
+    type(motion_event_type), intent(in) :: event   !< the event, with its impulse in the unit that the sentence shows
     character(len=:), allocatable :: text
 
     text = trim(event%group)//' '//to_text(event%number)

@@ -5,6 +5,7 @@ Compares the program with itself in part: a file in SI and the same mechanism in
 import json
 import math
 import os
+import re
 
 import numpy as np
 import pytest
@@ -206,6 +207,13 @@ def test_impulses_with_named_units(units, mech9d, named):
             events = json.load(file)['events']
         impacts = [event for event in events if event['kind'] == 'impact']
         units.checks.true(len(impacts) > 2, f'{system}: impacts', len(impacts))
+        said = [float(words) for words in re.findall(r'is hit, impulse (\S+)', done.stderr)]
+        units.checks.near(np.array(said[:5]), np.array([event['impulse'] for event in impacts[:5]]), 1e-3, f'{system}: impulses in words', scale=min(said))
+        rest = run(mech9d, path, '--equilibrium', '--table', os.path.join(units.folder, 'run.dat'), folder=units.folder)
+        # the stop of the slide bears its weight, and the arm hangs
+        bears = [(float(number), unit) for number, unit in re.findall(r'bears (\S+) ([^;\n]+)', rest.stderr)]
+        units.checks.near(np.array([x * file_units.si_of(unit.replace(' ', '_')) for x, unit in bears]), np.array([0.7 * 9.81]), 1e-4,
+                          f'{system}: the force of a stop in words')
         of = {1: system.F, 2: system.F * system.L}
         found.append([[event['time'], event['number'], event['impulse'] * of[event['number']]] +
                       [x * system.F for pair in event['pairs'] for x in pair['force']] +

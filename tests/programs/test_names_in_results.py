@@ -64,12 +64,38 @@ def test_check_tells_names(checks, mech9k, tmp_path):
     said = run(mech9k, write(tmp_path), '--check').stdout.splitlines()
     checks.true(any(line.split()[:4] == ['2', '1', 'and', '2'] and line.endswith('  crank: A and 2') for line in said), 'dimensions of the crank')
     checks.true(any(line.startswith('  q4') and line.endswith('  D') for line in said), 'coordinates at the start')
+    checks.true(said[1] == 'independent: 1 (A)' and 'could be independent instead of 1 (A): 2, 3 (C), 4 (D)' in said, f'independent coordinates: {said}')
     plain = FOUR_BAR
     for name, number in (('crank', 2), ('rocker', 4), ('A', 1), ('D', 4)):
         plain = plain.replace(f"name='{name}', links", 'links').replace(f"'{name}'", str(number))
     plain = '\n'.join(line for line in plain.replace("name='C', ", '').replace('pair(C)', 'pair(3)').splitlines() if not line.startswith('&link')) + '\n'
     unnamed = run(mech9k, write(tmp_path, plain), '--check')
     checks.true(unnamed.returncode == DONE and not any(line != line.rstrip() for line in unnamed.stdout.splitlines()), f'without names: {unnamed.stderr}')
+
+
+def test_plan_range_and_assemblies_tell_names(checks, mech9k, tmp_path):
+    path = write(tmp_path)
+    said = run(mech9k, path, '--plan').stdout
+    checks.true('block 1: links 2 (crank), 3, 4 (rocker)' in said and 'solved for: 2, 4 (D), 3 (C) from' in said, f'the plan: {said}')
+    checks.true('without mass, no terms of inertia: links 2 (crank), 3\n' in said, f'links without mass: {said}')
+    said = run(mech9k, path, '--range').stdout.splitlines()
+    checks.true(said[1].split()[4:7] == ['unit', 'name', 'limited'], f'a column of names: {said}')
+    checks.true(said[2].split()[0] == 'q1' and said[2].split()[4:6] == ['rad', 'A'], f'the range of a coordinate: {said}')
+    said = run(mech9k, path, '--branches')
+    checks.true("&initial coordinate='C', position=" in said.stdout and '&initial coordinate=2, position=' in said.stdout, f'assemblies: {said.stdout}')
+    with open(path, 'a', encoding='utf-8') as file:
+        file.write(''.join(line + '\n' for line in said.stdout.splitlines()[1:4] if "'D'" not in line))
+    checks.equal(run(mech9k, path, '--check').returncode, DONE, 'assemblies go into the data file')
+
+
+def test_reports_in_words_have_names(checks, mech9k, mech9d, tmp_path):
+    path = write(tmp_path)
+    said = run(mech9k, path, '--table', 'case.dat', folder=tmp_path).stderr
+    checks.true('closed chain 1 (coordinates 2, 3 (C), 4 (D))' in said, f'the chain in the worst position: {said}')
+    said = run(mech9k, path, '--check').stdout
+    checks.true('\n  pair 3 (C): force along z, moment about x y; columns R3.fz' in said, f'forces that are not determined: {said}')
+    said = run(mech9k, write(tmp_path, FOUR_BAR.replace('0.4, 10', '0.4')), '--table', 'case.dat', folder=tmp_path).stderr
+    checks.true('note: the drive of coordinate 1 (A) stands still' in said, f'notes: {said}')
 
 
 def test_drawings_and_graphs_show_names(checks, mech9k, tmp_path):

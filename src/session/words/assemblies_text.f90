@@ -1,6 +1,8 @@
 !> The assemblies of a mechanism in words, for --branches.
 module mech9_assemblies_text
-  use mech9_text, only: to_text, some_of
+  use mech9_named_words, only: named_list
+  use mech9_part_names, only: part_names_type, name_in
+  use mech9_text, only: to_text
   use mech9_counted, only: counted
   use mech9_mechanism, only: mechanism_type
   use mech9_joint_words, only: shown_of
@@ -27,13 +29,13 @@ contains
     integer, intent(in) :: n_starts                !< number of random starts
     type(assembly_list_type) :: list
     character(len=24) :: number
-    character(len=:), allocatable :: words
+    character(len=:), allocatable :: words, reference
     integer :: i, k
 
     call find_assemblies(mechanism, plan, start, n_starts, list)
     write (unit, '(a)') '! '//counted(size(list%found), 'assembly')//' found from '//counted(list%starts, 'start')// &
       ', of which '//to_text(list%closed)//' could be closed'
-    if (size(list%posture%unseen) > 0) call print_unseen(unit, shown_of(mechanism%structure, list%posture%unseen))
+    if (size(list%posture%unseen) > 0) call print_unseen(unit, mechanism%names, shown_of(mechanism%structure, list%posture%unseen))
     do i = 1, size(list%found)
       words = ''
       if (i == 1) words = '; that of the data file'
@@ -42,19 +44,22 @@ contains
       do k = 1, plan%n_coordinates
         if (.not. plan%steps(plan%step_of(k))%dependent) cycle
         write (number, '(es24.16)') list%q(k, i)/unit_of(mechanism, k)
-        write (unit, '(a)') '&initial coordinate='//to_text(k)//', position='//trim(adjustl(number))//' /'
+        reference = to_text(k)
+        if (name_in(mechanism%names%coordinates, k) /= '') reference = ''''//trim(name_in(mechanism%names%coordinates, k))//''''
+        write (unit, '(a)') '&initial coordinate='//reference//', position='//trim(adjustl(number))//' /'
       end do
     end do
   end subroutine print_assemblies
 
   !> Say which settings make no assembly of their own.
-  subroutine print_unseen(unit, links)
+  subroutine print_unseen(unit, names, links)
     integer, intent(in) :: unit       !< Fortran unit to write to
+    type(part_names_type), intent(in) :: names   !< of links and pairs
     integer, intent(in) :: links(:)   !< links of joints and rods, but for those that the user does not know
 
     if (size(links) > 0) then
       write (unit, '(a)') '! these links only form joints, or rods between joints, and their settings are not counted: '// &
-        trim(some_of(links, most_links))
+        named_list(names%links, links, most_links)
     else
       write (unit, '(a)') '! settings of the angles of one joint are not counted'
     end if

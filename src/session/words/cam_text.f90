@@ -1,5 +1,6 @@
 !> Cams in words: the lines about a profile, and the reasons why there is none.
 module mech9_cam_text
+  use mech9_named_words, only: with_names, named_number
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data
   use mech9_text, only: to_text
@@ -34,7 +35,7 @@ contains
       else
         name = name//', and an edge on link '
       end if
-      name = name//to_text(cam%follower)
+      name = with_names(model%mechanism%names, name//to_text(cam%follower))
     end associate
   end function name_of_cam
 
@@ -128,7 +129,8 @@ contains
       character(len=:), allocatable :: text
 
       associate (k => model%request%cams(number)%coordinate)
-        text = ' at q'//to_text(k)//' = '//to_text(contact%angle/unit_of(model%mechanism, k))//' '// &
+        text = ' at q'//named_number(model%mechanism%names%coordinates, k)//' = '// &
+               to_text(contact%angle/unit_of(model%mechanism, k))//' '// &
                trim(unit_name(model%mechanism, k))//' (t = '//to_text(contact%t)//' s)'
       end associate
     end function place_of
@@ -161,7 +163,8 @@ contains
       type(cam_contact_type), intent(in) :: last    !< its last contact
 
       associate (k => model%request%cams(number)%coordinate)
-        write (unit, '(a)') '  undercut: from q'//to_text(k)//' = '//to_text(first%angle/unit_of(model%mechanism, k))//' to '// &
+        write (unit, '(a)') '  undercut: from q'//named_number(model%mechanism%names%coordinates, k)//' = '// &
+          to_text(first%angle/unit_of(model%mechanism, k))//' to '// &
           to_text(last%angle/unit_of(model%mechanism, k))//' '//trim(unit_name(model%mechanism, k))//' (t = '// &
           to_text(first%t)//' to '//to_text(last%t)//' s)'
       end associate

@@ -1,9 +1,9 @@
 !> Notes of --check on data that are allowed but often mistakes: angles in the other unit, bodies and links without effect.
 module mech9_check_notes
-  use mech9_named_words, only: with_names
+  use mech9_named_words, only: with_names, named_list
   use mech9_kinds, only: wp, pi, radians_per_degree
   use mech9_error, only: error_type
-  use mech9_text, only: to_text, some_of
+  use mech9_text, only: to_text
   use mech9_masks, only: numbers_of
   use mech9_partition, only: free_coordinate
   use mech9_mechanism, only: mechanism_type
@@ -128,7 +128,7 @@ contains
     real(wp) :: frequency
 
     if (mechanism%units%rate_name /= 'deg/s') return
-    name = trim(law%owner())
+    name = with_names(mechanism%names, trim(law%owner()))
     if (present(owner)) name = owner
     select type (law)
     type is (harmonic_law_type)
@@ -173,7 +173,7 @@ contains
       end associate
     end do
     if (any(massless)) write (unit, '(a)') 'note: '//trim(merge('links', 'link ', count(massless) > 1))//' '// &
-      some_of(numbers_of(massless), longest_list)//trim(merge(' have', ' has ', count(massless) > 1))// &
-      ' no mass, while others have; give a &body where this is a mistake'
+      named_list(mechanism%names%links, numbers_of(massless), longest_list)// &
+      trim(merge(' have', ' has ', count(massless) > 1))//' no mass, while others have; give a &body where this is a mistake'
   end subroutine note_bodies
 end module mech9_check_notes

@@ -83,7 +83,8 @@ contains
     call print_forceless(unit, model%mechanism)
     call forces%judge(model, plan, start)
     if (.not. allocated(forces%unique)) return
-    call print_uniqueness(unit, reacting_pairs(model), forces%unique, model%request%output%reactions_in_links)
+    call print_uniqueness(unit, model%mechanism%names, reacting_pairs(model), forces%unique, &
+                          model%request%output%reactions_in_links)
     call find_turning_plane(model%mechanism%structure, model%mechanism%pairs, plane)
     if (plane%found) call print_across(unit, plane%normal(:, 1), reacting_pairs(model), forces%unique)
   end subroutine print_forces

@@ -1,6 +1,7 @@
 !> Notes on data without effect, which are allowed but often mistakes: gravity, forces and torques that move nothing in the plane of a
 !> planar mechanism, lengths of very different size, and drives that stand still.
 module mech9_effect_notes
+  use mech9_named_words, only: with_names
   use mech9_kinds, only: wp
   use mech9_rotation, only: cross
   use mech9_text, only: to_text
@@ -109,9 +110,10 @@ contains
     least = minloc(dimensions%distance, dim=1, mask=counts)
     largest = maxloc(dimensions%distance, dim=1, mask=counts)
     if (.not. dimensions(largest)%distance > large_ratio*dimensions(least)%distance) return
-    write (unit, '(a)') 'note: axes are '//trim(length_text(mechanism, dimensions(largest)%distance, 6))//' apart in link '// &
+    write (unit, '(a)') with_names(mechanism%names, &
+      'note: axes are '//trim(length_text(mechanism, dimensions(largest)%distance, 6))//' apart in link '// &
       to_text(dimensions(largest)%link)//' and '//trim(length_text(mechanism, dimensions(least)%distance, 6))//' in link '// &
-      to_text(dimensions(least)%link)//'; correct one where they were meant in different units'
+      to_text(dimensions(least)%link)//'; correct one where they were meant in different units')
   end subroutine print_lengths
 
   !> Note drives that all stand still in a run that lasts, where nothing else moves.
@@ -127,8 +129,8 @@ contains
         if (drives(i)%drive%greatest_rate(time%start, time%end - time%start) > 0.0_wp) return
       end do
       if (size(drives) == 1) then
-        write (unit, '(a)') 'note: the drive of coordinate '//to_text(drives(1)%drive%coordinate)//' stands still, so that '// &
-          'nothing moves'
+        write (unit, '(a)') with_names(model%mechanism%names, 'note: the drive of coordinate '// &
+          to_text(drives(1)%drive%coordinate)//' stands still, so that nothing moves')
       else
         write (unit, '(a)') 'note: all drives stand still, so that nothing moves'
       end if

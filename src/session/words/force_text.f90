@@ -1,5 +1,7 @@
 !> Sentences about the forces in pairs: which components equilibrium determines.
 module mech9_force_text
+  use mech9_named_words, only: with_names
+  use mech9_part_names, only: part_names_type
   use mech9_kinds, only: wp
   use mech9_text, only: to_text, some_of
   use mech9_masks, only: numbers_of
@@ -17,8 +19,9 @@ module mech9_force_text
 contains
 
   !> Print the components that equilibrium does not determine, with their columns in the results.
-  subroutine print_uniqueness(unit, recorded, unique, in_links)
+  subroutine print_uniqueness(unit, names, recorded, unique, in_links)
     integer, intent(in) :: unit              !< the output unit
+    type(part_names_type), intent(in) :: names    !< of links and pairs
     logical, intent(in) :: recorded(:)       !< (M) pairs whose forces are recorded
     type(uniqueness_type), intent(in) :: unique   !< components and forces that it determines
     logical, intent(in) :: in_links          !< columns are along the axes of the moving links; else of link 1
@@ -35,8 +38,8 @@ contains
       trim(merge('the moving links):', 'link 1):          ', in_links))
     do k = 1, size(recorded)
       if (all(unique%pairs(:, k)) .or. .not. recorded(k)) cycle
-      write (unit, '(a)') '  pair '//to_text(k)//':'//components_in_words(unique%pairs(:, k))//'; columns'// &
-        columns_in_words(k, unique%shown(in_links))
+      write (unit, '(a)') with_names(names, '  pair '//to_text(k)//':'//components_in_words(unique%pairs(:, k))// &
+                                     '; columns'//columns_in_words(k, unique%shown(in_links)))
     end do
   end subroutine print_uniqueness
 

@@ -57,11 +57,12 @@ contains
     if (rest%coordinate > 0) &
       of_force = mechanism%units%size_of(trim(si_force(mechanism%pairs(rest%coordinate)%pair)))
     words = 'pairs are at rest at '//counted(rest%outputs, 'output')//', where their friction counts as 0'
-    if (rest%coordinate > 0) words = words//'; at t = '//to_text(rest%t, 8)//' s the force of drive '//to_text(rest%coordinate)// &
+    if (rest%coordinate > 0) words = words//'; at t = '//to_text(rest%t, 8)//' s the force of the drive of coordinate '// &
+                                     to_text(rest%coordinate)// &
                                      ' lies between '//to_text(rest%force(1)/of_force, 6)//' and '// &
                                      to_text(rest%force(2)/of_force, 6)//' '// &
                                      trim(force_unit_name(mechanism, rest%coordinate))
-    write (unit, '(a)') words
+    write (unit, '(a)') with_names(mechanism%names, words)
   end subroutine print_rest
 
   !> Say that frictions and rigid contacts do not count in an equilibrium; nothing where there are none.

@@ -1,5 +1,6 @@
 !> The dimensions of links and curves in words, for --check.
 module mech9_geometry_text
+  use mech9_named_words, only: named_number
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
   use mech9_counted, only: counted
@@ -79,8 +80,8 @@ contains
     do k = 1, size(mechanism%pairs)
       call mechanism%pairs(k)%pair%guide(guide)
       if (.not. guide%length > 0.0_wp) cycle
-      write (unit, '(a)') 'curve of pair '//to_text(k)//': '//trim(merge('closed', 'open  ', guide%closed))// &
-        ', length '//trim(length_text(mechanism, guide%length, 10))
+      write (unit, '(a)') 'curve of pair '//named_number(mechanism%names%coordinates, k)//': '// &
+        trim(merge('closed', 'open  ', guide%closed))//', length '//trim(length_text(mechanism, guide%length, 10))
     end do
   end subroutine print_curves
 

@@ -1,5 +1,7 @@
 !> Notes on drives whose rates or accelerations jump.
 module mech9_law_notes
+  use mech9_named_words, only: with_names
+  use mech9_part_names, only: part_names_type
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: to_text
@@ -26,13 +28,15 @@ contains
     integer :: i
 
     do i = 1, size(model%problem%drives)
-      call print_jumps_of(unit, model%problem%drives(i)%drive, model%request%time%start, model%request%time%end)
+      call print_jumps_of(unit, model%mechanism%names, model%problem%drives(i)%drive, model%request%time%start, &
+                          model%request%time%end)
     end do
   end subroutine print_jumps
 
   !> Print the lines for one drive.
-  subroutine print_jumps_of(unit, drive, start, end)
+  subroutine print_jumps_of(unit, names, drive, start, end)
     integer, intent(in) :: unit             !< Fortran unit to write to
+    type(part_names_type), intent(in) :: names   !< of links and pairs
     class(law_type), intent(in) :: drive    !< the drive
     real(wp), intent(in) :: start           !< time of the start [s]
     real(wp), intent(in) :: end             !< time of the end [s]
@@ -57,14 +61,15 @@ contains
       changes(:, n) = abs(behind(2:) - before(2:))
       largest(2) = max(largest(2), abs(before(3)), abs(behind(3)))
     end do
-    call print_times(unit, drive, 'rate', pack(times(:n), changes(1, :n) > least_jump*largest(1)))
-    call print_times(unit, drive, 'acceleration', pack(times(:n), changes(2, :n) > least_jump*largest(2) .and. &
-                                                       .not. changes(1, :n) > least_jump*largest(1)))
+    call print_times(unit, names, drive, 'rate', pack(times(:n), changes(1, :n) > least_jump*largest(1)))
+    call print_times(unit, names, drive, 'acceleration', pack(times(:n), changes(2, :n) > least_jump*largest(2) .and. &
+                                                              .not. changes(1, :n) > least_jump*largest(1)))
   end subroutine print_jumps_of
 
   !> Print one line with the times of jumps; none where there are none.
-  subroutine print_times(unit, drive, name, times)
+  subroutine print_times(unit, names, drive, name, times)
     integer, intent(in) :: unit             !< Fortran unit to write to
+    type(part_names_type), intent(in) :: names   !< of links and pairs
     class(law_type), intent(in) :: drive    !< the drive
     character(len=*), intent(in) :: name    !< of the quantity that jumps
     real(wp), intent(in) :: times(:)        !< when it jumps [s]
@@ -77,6 +82,6 @@ contains
       list = list//', '//to_text(times(i), 8)
     end do
     if (size(times) > most_times) list = list//' and '//counted(size(times) - most_times, 'later time')//','
-    write (unit, '(a)') 'note: the '//name//' of the '//trim(drive%owner())//' jumps at t = '//list//' s'
+    write (unit, '(a)') with_names(names, 'note: the '//name//' of the '//trim(drive%owner())//' jumps at t = '//list//' s')
   end subroutine print_times
 end module mech9_law_notes

@@ -1,11 +1,12 @@
 !> The plan in words, for --plan and --verbose: the computations, and those left out with the reason.
 module mech9_plan_text
-  use mech9_named_words, only: with_names
+  use mech9_named_words, only: with_names, named_list
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
   use mech9_counted, only: counted
   use mech9_screw, only: split_space
   use mech9_mechanism, only: mechanism_type
+  use mech9_part_names, only: part_names_type
   use mech9_explanation, only: explain_failure
   use mech9_structure, only: structure_type
   use mech9_plan, only: plan_type, block_type, closure_type, step_type
@@ -32,10 +33,10 @@ contains
     logical :: needed(size(plan%blocks))
     integer :: b, i
 
-    call print_arithmetic(unit, plan)
+    call print_arithmetic(unit, mechanism%names, plan)
     needed = requested_blocks(plan, requested)
     do b = 1, size(plan%blocks)
-      call print_block(unit, mechanism%structure, plan, plan%blocks(b), b, needed(b))
+      call print_block(unit, mechanism%structure, mechanism%names, plan, plan%blocks(b), b, needed(b))
     end do
     if (requested%derivatives == 1) write (unit, '(a)') 'accelerations left out: none are recorded'
     if (requested%derivatives == 0) write (unit, '(a)') &
@@ -49,37 +50,39 @@ contains
   end subroutine print_plan
 
   !> Write one block: its links, equations and chains.
-  subroutine print_block(unit, structure, plan, block, number, is_needed)
+  subroutine print_block(unit, structure, names, plan, block, number, is_needed)
     integer, intent(in) :: unit            !< Fortran unit to write to
     type(structure_type), intent(in) :: structure  !< links and joints
+    type(part_names_type), intent(in) :: names     !< of links and pairs
     type(plan_type), intent(in) :: plan    !< the plan of the mechanism
     type(block_type), intent(in) :: block  !< the block
     integer, intent(in) :: number          !< number of the block
     logical, intent(in) :: is_needed       !< whether a result or load depends on the block
     integer :: c, i
 
-    write (unit, '(a)') 'block '//to_text(number)//': links '// &
+    write (unit, '(a)') with_names(names, 'block '//to_text(number)//': links '// &
       to_text(shown_of(structure, pack(plan%steps(block%first_step:block%last_step)%link, &
                                        [(.not. any(plan%closures(block%first_closure:block%last_closure)%closing == i), &
-                                         i=block%first_step, block%last_step)])))
+                                         i=block%first_step, block%last_step)]))))
     if (.not. is_needed) write (unit, '(a)') '  left out: no result or load depends on it'
     if (size(block%unknowns) > 0) then
-      write (unit, '(a)') '  solved for: '//to_text([(block%coordinates(i), i=1, size(block%unknowns))])//' from '// &
+      write (unit, '(a)') '  solved for: '// &
+        named_list(names%coordinates, block%coordinates(:size(block%unknowns)), size(block%unknowns))//' from '// &
         counted(block%equations, 'equation')//' of rank '//to_text(size(block%unknowns))
       if (block%is_constant) write (unit, '(a)') '  its Jacobian is constant, since nothing turns: factorized once'
     else
       write (unit, '(a)') '  nothing to solve: an open chain'
     end if
-    if (block%arithmetic > 1) call print_plane(unit, structure, plan, block)
+    if (block%arithmetic > 1) call print_plane(unit, structure, names, plan, block)
     do c = block%first_closure, block%last_closure
       associate (closure => plan%closures(c))
         if (closure%coupling > 0) then
-          call print_coupling(unit, plan, closure%coupling)
+          call print_coupling(unit, names, plan, closure%coupling)
           cycle
         end if
-        write (unit, '(a)') '  chain '//to_text(closure%chain)//' closes '// &
-          place_of_closing(structure, plan%steps(closure%closing))//'; its motions span '//counted(closure%rank, 'dimension')
-        call print_basis(unit, structure, plan, closure)
+        write (unit, '(a)') with_names(names, '  chain '//to_text(closure%chain)//' closes '// &
+          place_of_closing(structure, plan%steps(closure%closing))//'; its motions span '//counted(closure%rank, 'dimension'))
+        call print_basis(unit, structure, names, plan, closure)
       end associate
     end do
   end subroutine print_block
@@ -100,21 +103,23 @@ contains
   end function place_of_closing
 
   !> Write the equation of a coupling in words.
-  subroutine print_coupling(unit, plan, number)
+  subroutine print_coupling(unit, names, plan, number)
     integer, intent(in) :: unit            !< Fortran unit to write to
+    type(part_names_type), intent(in) :: names  !< of links and pairs
     type(plan_type), intent(in) :: plan    !< the plan of the mechanism
     integer, intent(in) :: number          !< of the coupling
 
     associate (coupling => plan%couplings(number)%coupling)
-      write (unit, '(a)') '  coupling '//to_text(number)//' ('//trim(coupling%kind_name())//') of coordinates '// &
-        to_text(coupling%coordinates)
+      write (unit, '(a)') with_names(names, '  coupling '//to_text(number)//' ('//trim(coupling%kind_name())// &
+                                     ') of coordinates '//to_text(coupling%coordinates))
     end associate
   end subroutine print_coupling
 
   !> Write the plane of a planar block of a spatial mechanism.
-  subroutine print_plane(unit, structure, plan, block)
+  subroutine print_plane(unit, structure, names, plan, block)
     integer, intent(in) :: unit            !< Fortran unit to write to
     type(structure_type), intent(in) :: structure  !< links and joints
+    type(part_names_type), intent(in) :: names     !< of links and pairs
     type(plan_type), intent(in) :: plan    !< the plan of the mechanism
     type(block_type), intent(in) :: block  !< the block
     integer :: link
@@ -122,17 +127,17 @@ contains
     associate (plane => plan%planar%planes(plan%planar%plane_of(block%last_step)))
       link = 1
       if (plane%base > 0) link = plan%steps(plane%base)%link
-      write (unit, '(a)') '  planar arithmetic: all its pairs turn about or slide across the direction '// &
-        direction_in_words(matmul(plane%axes(:, 3), plan%link_in_frame(link)%r))//' of '//trim(link_name(structure, link))
+      write (unit, '(a)') with_names(names, '  planar arithmetic: all its pairs turn about or slide across the direction '// &
+        direction_in_words(matmul(plane%axes(:, 3), plan%link_in_frame(link)%r))//' of '//trim(link_name(structure, link)))
     end associate
   end subroutine print_plane
 
   !> Write the directions in which the links of a chain can move. An example is "turning about (0, 0, 1), sliding along
   !> (1, 0, 0), (0, 1, 0) of link 1". Write nothing where all six motions are possible.
-!> (0, 1, 0) of link 1"; nothing where all six motions are possible.
-  subroutine print_basis(unit, structure, plan, closure)
+  subroutine print_basis(unit, structure, names, plan, closure)
     integer, intent(in) :: unit                !< Fortran unit to write to
     type(structure_type), intent(in) :: structure  !< links and joints
+    type(part_names_type), intent(in) :: names     !< of links and pairs
     type(plan_type), intent(in) :: plan        !< the plan of the mechanism
     type(closure_type), intent(in) :: closure  !< the closed chain
     character(len=:), allocatable :: turning, sliding
@@ -152,7 +157,7 @@ contains
     sliding = ''
     if (n_slides > 0) sliding = 'sliding along '//directions_in_words(matmul(to_link, slides(:, :n_slides)))
     if (n_turns > 0 .and. n_slides > 0) turning = turning//', '
-    write (unit, '(4x,a)') turning//sliding//' of '//trim(link_name(structure, link))
+    write (unit, '(4x,a)') with_names(names, turning//sliding//' of '//trim(link_name(structure, link)))
   end subroutine print_basis
 
   !> Directions in words: "(1, 0, 0), (0, 1, 0)", or "all directions".
@@ -181,8 +186,9 @@ contains
   end function direction_in_words
 
   !> Write whether the arithmetic is planar or spatial, and why.
-  subroutine print_arithmetic(unit, plan)
+  subroutine print_arithmetic(unit, names, plan)
     integer, intent(in) :: unit          !< Fortran unit to write to
+    type(part_names_type), intent(in) :: names  !< of links and pairs
     type(plan_type), intent(in) :: plan  !< the plan of the mechanism
     character(len=:), allocatable :: reason
 
@@ -192,7 +198,7 @@ contains
     else if (allocated(plan%planar%why_not)) then
       reason = ''
       call explain_failure(plan%planar%why_not, reason)
-      write (unit, '(a)') 'spatial arithmetic: '//reason
+      write (unit, '(a)') with_names(names, 'spatial arithmetic: '//reason)
     end if
   end subroutine print_arithmetic
 
@@ -202,6 +208,7 @@ contains
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(plan_type), intent(in) :: plan            !< the plan of the mechanism
     type(dynamics_plan_type) :: dynamics
+    character(len=1), allocatable :: unnamed(:)
     logical :: has_mass(plan%n_links), idle(plan%n_links), without_effect(size(mechanism%loads))
     integer :: i
 
@@ -218,10 +225,10 @@ contains
     idle(1) = .false.
     has_mass(mechanism%structure%shown_links() + 1:) = .true.
     idle(mechanism%structure%shown_links() + 1:) = .false.
-    call print_marked(unit, .not. has_mass, 'without mass, no terms of inertia: links ')
-    call print_marked(unit, idle, 'no mass, load or later chain depends on their motion, left out: links ')
+    call print_marked(unit, .not. has_mass, 'without mass, no terms of inertia: links ', mechanism%names%links)
+    call print_marked(unit, idle, 'no mass, load or later chain depends on their motion, left out: links ', mechanism%names%links)
     without_effect = .true.
     without_effect(dynamics%acting) = .false.
-    call print_marked(unit, without_effect, 'zero, or on link 1 alone, left out: loads ')
+    call print_marked(unit, without_effect, 'zero, or on link 1 alone, left out: loads ', unnamed)
   end subroutine print_dynamics_plan
 end module mech9_plan_text

@@ -1,5 +1,7 @@
 !> The ranges of the independent coordinates in words, for --range.
 module mech9_range_text
+  use mech9_named_words, only: with_names
+  use mech9_part_names, only: part_names_type, name_in
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
   use mech9_model, only: model_type
@@ -29,11 +31,12 @@ contains
     type(motion_range_type) :: range
     character(len=:), allocatable :: name
     real(wp) :: factor
-    integer :: i, k
+    integer :: i, k, named
 
     write (unit, '(a)') '# how far each independent coordinate can go from the start, the others held there'
+    named = name_width(model%mechanism%names, plan%independent)
     write (unit, '(a)') column('#', 6)//column('start', width)//column('lower', width)//column('upper', width)// &
-      'unit  limited by'
+      'unit  '//named_column('name', named)//'limited by'
     do i = 1, size(plan%independent)
       k = plan%independent(i)
       call find_range(plan, start, k, range)
@@ -41,9 +44,34 @@ contains
       name = trim(unit_name(model%mechanism, k))
       write (unit, '(a)') column('q'//to_text(k), 6)//column(to_text(factor*range%start, digits), width)// &
         column(value_of(range%lower, factor), width)//column(value_of(range%upper, factor), width)// &
-        column(name, 6)//reasons(plan, range, factor, name)
+        column(name, 6)//named_column(trim(name_in(model%mechanism%names%coordinates, k)), named)// &
+        with_names(model%mechanism%names, reasons(plan, range, factor, name))
     end do
   end subroutine print_ranges
+
+  !> Width of the column of names; 0 where no independent coordinate has a name.
+  pure integer function name_width(names, independent) result(letters)
+    type(part_names_type), intent(in) :: names    !< of links and pairs
+    integer, intent(in) :: independent(:)         !< numbers of the coordinates
+    integer :: i, longest
+
+    longest = 0
+    do i = 1, size(independent)
+      longest = max(longest, len_trim(name_in(names%coordinates, independent(i))))
+    end do
+    letters = 0
+    if (longest > 0) letters = max(longest, len('name')) + 2
+  end function name_width
+
+  !> A name in the column of names; empty where there is no such column.
+  pure function named_column(name, width) result(padded)
+    character(len=*), intent(in) :: name  !< the name; empty: none
+    integer, intent(in) :: width          !< letters of the column
+    character(len=width) :: padded
+
+    padded = name
+    if (name == '' .and. width > 0) padded = '-'
+  end function named_column
 
   !> A text in a column of the given width.
   pure function column(text, width) result(padded)

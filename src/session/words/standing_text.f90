@@ -1,5 +1,6 @@
 !> Words on a motion that takes long to reach its next output.
 module mech9_standing_text
+  use mech9_named_words, only: named_number
   use mech9_kinds, only: wp
   use mech9_simulation_tolerances, only: doubtful_conditioning
   use mech9_text, only: to_text
@@ -22,8 +23,8 @@ contains
     if (standing%step > 0.0_wp) text = text//', in steps of '//to_text(standing%step, 2)//' s'
     if (standing%fastest > 0) then
       associate (k => standing%fastest, mechanism => model%mechanism)
-        text = text//'; q'//to_text(k)//' moves fastest, at '//to_text(standing%rate/rate_unit_of(mechanism, k), 3)//' '// &
-               trim(rate_unit_name(mechanism, k))
+        text = text//'; q'//named_number(mechanism%names%coordinates, k)//' moves fastest, at '// &
+               to_text(standing%rate/rate_unit_of(mechanism, k), 3)//' '//trim(rate_unit_name(mechanism, k))
       end associate
     end if
     if (standing%conditioning < doubtful_conditioning) &

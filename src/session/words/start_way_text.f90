@@ -1,5 +1,6 @@
 !> How the start of a motion was reached from the position in which the mechanism is drawn, in words.
 module mech9_start_way_text
+  use mech9_named_words, only: named_number
   use mech9_text, only: to_text
   use mech9_mechanism, only: mechanism_type
   use mech9_result_units, only: unit_of
@@ -33,7 +34,7 @@ contains
     do i = 1, min(most_named, size(way%coordinates))
       k = way%coordinates(i)
       if (i > 1) text = text//', '
-      text = text//'q'//to_text(k)//' = '//to_text(way%stopped(i)/unit_of(mechanism, k), 8)
+      text = text//'q'//named_number(mechanism%names%coordinates, k)//' = '//to_text(way%stopped(i)/unit_of(mechanism, k), 8)
     end do
     if (way%turned_around) then
       text = text//'; the start was reached the other way round'

@@ -5,6 +5,9 @@ module mech9_structure_text
   use mech9_counted, only: counted
   use mech9_masks, only: numbers_of
   use mech9_structure, only: structure_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_part_names, only: part_names_type
+  use mech9_named_words, only: with_names, named_list, named_number
   use mech9_structural_vectors, only: structural_vectors_type
   use mech9_joint_expansion, only: shown_vectors
   use mech9_plan, only: plan_type
@@ -50,9 +53,9 @@ contains
   end subroutine print_names_of_vectors
 
   !> Write counts, mobility and redundancy.
-  subroutine print_mobility(unit, structure, plan)
+  subroutine print_mobility(unit, mechanism, plan)
     integer, intent(in) :: unit                    !< Fortran unit to write to
-    type(structure_type), intent(in) :: structure  !< links and joints
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(plan_type), intent(in) :: plan            !< the plan of the mechanism
     integer :: b, unknowns, equations
 
@@ -62,34 +65,35 @@ contains
       unknowns = unknowns + size(plan%blocks(b)%unknowns)
       equations = equations + plan%blocks(b)%equations
     end do
-    call print_counts(unit, structure, plan)
+    call print_counts(unit, mechanism, plan)
     write (unit, '(a)') 'mobility '//to_text(plan%n_coordinates - unknowns)//' = '// &
       counted(plan%n_coordinates, 'coordinate')//' - rank '//to_text(unknowns)
     if (equations > unknowns) write (unit, '(a)') 'redundant equations: '//to_text(equations - unknowns)
   end subroutine print_mobility
 
   !> Write the numbers of links, coordinates and closed chains, and the independent coordinates.
-  subroutine print_counts(unit, structure, plan)
+  subroutine print_counts(unit, mechanism, plan)
     integer, intent(in) :: unit                    !< Fortran unit to write to
-    type(structure_type), intent(in) :: structure  !< links and joints
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(plan_type), intent(in) :: plan            !< the plan of the mechanism
 
-    write (unit, '(a)', advance='no') counted(structure%shown_links(), 'link')//', '// &
+    write (unit, '(a)', advance='no') counted(mechanism%structure%shown_links(), 'link')//', '// &
       counted(plan%n_coordinates, 'coordinate')//', '//counted(size(plan%closures) - size(plan%couplings), 'closed chain')
     if (size(plan%couplings) > 0) write (unit, '(a)', advance='no') ', '//counted(size(plan%couplings), 'coupling')
     write (unit, '(a)') ''
-    write (unit, '(a)') 'independent: '//to_text(plan%independent)
+    write (unit, '(a)') 'independent: '// &
+      named_list(mechanism%names%coordinates, plan%independent, size(plan%independent))
   end subroutine print_counts
 
   !> Write counts, ranks, redundant equations, and which coordinates can be independent or cannot move.
-  subroutine print_mobility_report(unit, structure, plan, report)
+  subroutine print_mobility_report(unit, mechanism, plan, report)
     integer, intent(in) :: unit                       !< Fortran unit to write to
-    type(structure_type), intent(in) :: structure     !< links and joints
+    type(mechanism_type), intent(in) :: mechanism     !< the mechanism
     type(plan_type), intent(in) :: plan               !< the plan of the mechanism
     type(mobility_report_type), intent(in) :: report  !< mobility and ranks
     integer :: i, c
 
-    call print_counts(unit, structure, plan)
+    call print_counts(unit, mechanism, plan)
     write (unit, '(a)') 'mobility by the count: '//to_text(report%by_count)//' = '//counted(plan%n_coordinates, 'coordinate')// &
       ' - '//counted(plan%n_coordinates - report%by_count - size(plan%couplings), 'dimension')//' of the chains'' motions'// &
       couplings_in_count(size(plan%couplings))
@@ -107,13 +111,13 @@ contains
       end if
     end do
     do i = 1, size(plan%independent)
-      if (i <= most_lines) call print_alternatives(unit, plan, report, i)
+      if (i <= most_lines) call print_alternatives(unit, mechanism%names, plan, report, i)
     end do
-    call print_marked(unit, .not. report%moves, 'cannot move, hence not be independent: ', &
-                      still_links(structure, report%moves))
-    call print_marked(unit, report%dimensions == 0, 'on no closed chain: ')
+    call print_marked(unit, .not. report%moves, 'cannot move, hence not be independent: ', mechanism%names%coordinates, &
+                      still_links(mechanism%structure, report%moves))
+    call print_marked(unit, report%dimensions == 0, 'on no closed chain: ', mechanism%names%coordinates)
     do i = 1, size(report%idle)
-      call print_idle(unit, structure, report%idle(i))
+      call print_idle(unit, mechanism%structure, mechanism%names, report%idle(i))
     end do
   end subroutine print_mobility_report
 
@@ -147,9 +151,10 @@ contains
   end function still_links
 
   !> Write the coordinates of an idle freedom, and the joints with several freedoms to which they belong.
-  subroutine print_idle(unit, structure, idle)
+  subroutine print_idle(unit, structure, names, idle)
     integer, intent(in) :: unit                    !< Fortran unit to write to
     type(structure_type), intent(in) :: structure  !< links and joints
+    type(part_names_type), intent(in) :: names     !< of links and pairs
     type(idle_type), intent(in) :: idle            !< the idle freedom
     character(len=:), allocatable :: joints
     integer :: i, j, before
@@ -163,8 +168,9 @@ contains
       before = j
     end do
     if (before > 0) joints = joints//')'
-    write (unit, '(a)') 'idle: coordinates '//some_of(idle%coordinates, longest_list)//joints//' can move while links '// &
-      to_text(outer_link(structure, idle, 1))//' and '//to_text(outer_link(structure, idle, 2))//' stand still'
+    write (unit, '(a)') with_names(names, 'idle: coordinates '//some_of(idle%coordinates, longest_list)//joints// &
+                                   ' can move while links '//to_text(outer_link(structure, idle, 1))//' and '// &
+                                   to_text(outer_link(structure, idle, 2))//' stand still')
   end subroutine print_idle
 
   !> The link at one end of an idle freedom; where it belongs to a joint, the link at the end of the joint.
@@ -220,8 +226,9 @@ contains
   end subroutine print_ranks
 
   !> Write which coordinates could be independent instead of one that is.
-  subroutine print_alternatives(unit, plan, report, i)
+  subroutine print_alternatives(unit, names, plan, report, i)
     integer, intent(in) :: unit                       !< Fortran unit to write to
+    type(part_names_type), intent(in) :: names        !< of links and pairs
     type(plan_type), intent(in) :: plan               !< the plan of the mechanism
     type(mobility_report_type), intent(in) :: report  !< mobility and ranks
     integer, intent(in) :: i                          !< position of the coordinate among the independent ones
@@ -230,21 +237,23 @@ contains
     others = numbers_of(abs(report%shares(:, i)) > least_share)
     others = pack(others, others /= plan%independent(i))
     if (size(others) > 0) then
-      write (unit, '(a)') 'could be independent instead of '//to_text(plan%independent(i))//': '//some_of(others, longest_list)
+      write (unit, '(a)') 'could be independent instead of '// &
+        named_number(names%coordinates, plan%independent(i))//': '//named_list(names%coordinates, others, longest_list)
     else
-      write (unit, '(a)') 'independent in any case: '//to_text(plan%independent(i))
+      write (unit, '(a)') 'independent in any case: '//named_number(names%coordinates, plan%independent(i))
     end if
   end subroutine print_alternatives
 
   !> Write a text and the numbers that are marked; nothing where none is.
-  subroutine print_marked(unit, mask, words, more)
+  subroutine print_marked(unit, mask, words, names, more)
     integer, intent(in) :: unit                     !< Fortran unit to write to
     logical, intent(in) :: mask(:)                  !< whether each number is in the list
     character(len=*), intent(in) :: words           !< text before the list
+    character(len=*), allocatable, intent(in) :: names(:)   !< names behind the numbers; not allocated: none
     character(len=*), intent(in), optional :: more  !< text after the list
 
     if (.not. any(mask)) return
-    write (unit, '(2a)', advance='no') words, some_of(numbers_of(mask), longest_list)
+    write (unit, '(2a)', advance='no') words, named_list(names, numbers_of(mask), longest_list)
     if (present(more)) write (unit, '(a)', advance='no') more
     write (unit, '(a)') ''
   end subroutine print_marked

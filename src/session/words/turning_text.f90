@@ -1,5 +1,6 @@
 !> Lines about the links whose turning motion is recorded: the axis of their angles, or why they have quaternions.
 module mech9_turning_text
+  use mech9_named_words, only: with_names
   use mech9_kinds, only: wp
   use mech9_text, only: to_text, some_of
   use mech9_model, only: model_type
@@ -37,6 +38,6 @@ contains
                                      ' leaves the plane across the axis of pair '//to_text(plane%pair)
       if (plane%pair == 0) words = words//', since no pair is revolute'
     end if
-    write (unit, '(a)') links//words
+    write (unit, '(a)') with_names(model%mechanism%names, links//words)
   end subroutine print_turning
 end module mech9_turning_text

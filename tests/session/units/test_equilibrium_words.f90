@@ -2,6 +2,7 @@
 module test_equilibrium_words
   use mech9_kinds, only: wp
   use mech9_linearised_equilibrium, only: equilibrium_type
+  use mech9_mechanism, only: mechanism_type
   use mech9_equilibrium_words, only: print_findings
   use mech9_test_files, only: text_of_unit
   use mech9_testing, only: tester_type
@@ -53,11 +54,12 @@ contains
     subroutine says(found, expected)
       type(equilibrium_type), intent(in) :: found   !< the equilibrium
       character(len=*), intent(in) :: expected      !< the right sentence
+      type(mechanism_type) :: plain
       character(len=:), allocatable :: text
       integer :: unit
 
       open (newunit=unit, file=path)
-      call print_findings(unit, 0, [found], .false.)
+      call print_findings(unit, plain, 0, [found], .false.)
       call text_of_unit(tester, unit, text)
       call tester%is_true(text == expected//achar(10), 'the sentence: '//text)
     end subroutine says
@@ -66,14 +68,15 @@ contains
   subroutine several(tester)
     type(tester_type), intent(inout) :: tester   !< counts the checks
     type(equilibrium_type) :: list(2)
+    type(mechanism_type) :: plain
     character(len=:), allocatable :: text
     integer :: unit
 
     call with_roots([(0.0_wp, 3.0_wp)], .true., list(1))
     call with_roots([(3.0_wp, 0.0_wp)], .false., list(2))
     open (newunit=unit, file=path)
-    call print_findings(unit, 20, list, .false.)
-    call print_findings(unit, 20, list, .true.)
+    call print_findings(unit, plain, 20, list, .false.)
+    call print_findings(unit, plain, 20, list, .true.)
     call text_of_unit(tester, unit, text)
     call tester%is_true(index(text, '2 positions of equilibrium from the initial position and 20 random ones, '// &
                               '1 of them stable') == 1, &

@@ -8,6 +8,7 @@ module test_structure_words
   use mech9_held_text, only: print_held
   use mech9_mobility_report, only: mobility_report_type, report_mobility
   use mech9_model, only: model_type
+  use mech9_part_names, only: part_names_type
   use mech9_plan, only: plan_type
   use mech9_plan_text, only: print_plan
   use mech9_planning, only: make_plan
@@ -61,13 +62,14 @@ contains
     type(plan_type) :: plan
     type(state_type) :: state
     character(len=:), allocatable :: text
+    character(len=1), allocatable :: unnamed(:)
     integer :: unit, nrg(5), nws(5), status
 
     call planned(tester, model, plan, state)
     open (newunit=unit, file=path)
     call print_structure(unit, model%mechanism%structure, model%problem%partition%vectors)
-    call print_marked(unit, [.true., .false., .true.], 'links ', '.')
-    call print_marked(unit, [.false.], 'nothing ')
+    call print_marked(unit, [.true., .false., .true.], 'links ', unnamed, '.')
+    call print_marked(unit, [.false.], 'nothing ', unnamed)
     call text_of_unit(tester, unit, text)
     read (text(index(text, 'nrg = ') + 6:index(text, 'nws') - 1), *, iostat=status) nrg
     call tester%is_true(status == 0 .and. nrg(1) == 1, 'links in the order of computation: '//text)
@@ -89,8 +91,8 @@ contains
     call planned(tester, model, plan, state)
     call report_mobility(model%mechanism, plan, state, report)
     open (newunit=unit, file=path)
-    call print_mobility(unit, model%mechanism%structure, plan)
-    call print_mobility_report(unit, model%mechanism%structure, plan, report)
+    call print_mobility(unit, model%mechanism, plan)
+    call print_mobility_report(unit, model%mechanism, plan, report)
     call text_of_unit(tester, unit, text)
     call tester%is_true(index(text, '4 links, 4 coordinates, 1 closed chain'//eol//'independent: 1'//eol) == 1, 'counts: '//text)
     call tester%is_true(index(text, 'mobility 1 = 4 coordinates - rank 3'//eol) > 0, 'the mobility')
@@ -126,6 +128,7 @@ contains
   subroutine forces(tester)
     type(tester_type), intent(inout) :: tester   !< counts the checks
     type(uniqueness_type) :: unique
+    type(part_names_type) :: unnamed
     logical :: recorded(3)
     character(len=:), allocatable :: text
     integer :: unit
@@ -134,7 +137,7 @@ contains
     allocate (unique%pairs(6, 3), unique%fixed(6, 3), unique%moving(6, 3), source=.true.)
     allocate (unique%couplings(0))
     open (newunit=unit, file=path)
-    call print_uniqueness(unit, recorded, unique, .false.)
+    call print_uniqueness(unit, unnamed, recorded, unique, .false.)
     call print_undetermined(unit, recorded, unique, .false.)
     call text_of_unit(tester, unit, text)
     call tester%is_true(text == 'forces and moments in the pairs: equilibrium determines all components'//eol, 'all: '//text)
@@ -144,7 +147,7 @@ contains
     unique%fixed(1, 2) = .false.
     unique%moving(6, 3) = .false.
     open (newunit=unit, file=path)
-    call print_uniqueness(unit, recorded, unique, .false.)
+    call print_uniqueness(unit, unnamed, recorded, unique, .false.)
     call print_undetermined(unit, recorded, unique, .false.)
     call text_of_unit(tester, unit, text)
     call tester%is_true(index(text, '  pair 3: force along z, moment about x; columns R3.fx R3.fy'//eol) > 0, &
