@@ -517,6 +517,10 @@ def test_files(checks, case):
     result = case(pendulum(), '--modes', '--mode', '1', '--animate', 'mode.svg')
     checks.equal(result.returncode, 0, 'a mode is shown')
     checks.true('<svg' in text_of(os.path.join(case.folder, 'mode.svg')), 'as a moving picture')
+    for words, says in (('--modes --mode 1 --animate mode.svg', 'the film of a mode has no arrows'),
+                        ('--equilibrium --sketch rest.svg', 'a run draws the arrows, and --equilibrium makes none')):
+        result = run(case.program, 'case.nml', *words.split(), '--set', 'output.force_arrows=.true.', folder=case.folder)
+        checks.true(f'without effect: force_arrows; {says}' in result.stderr, words, result.stderr)
     result = case(pendulum(), '--equilibrium', '--starts', '5', '--hdf5', 'rest.h5')
     checks.equal(result.returncode, 0, 'equilibria are written as HDF5')
     try:

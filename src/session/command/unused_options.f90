@@ -25,7 +25,10 @@ contains
     name = program_names(options%program)
     answer = options%answer()
     ! options without effect are refused there
-    if (options%rest() /= '' .or. options%has('exponents')) return
+    if (options%rest() /= '' .or. options%has('exponents')) then
+      if (options%has('sketch') .or. options%has('animate')) call print_idle_arrows(unit, options, model)
+      return
+    end if
     if (answer /= '') then
       call list_given(options, of_runs, names)
       if (names /= '') write (unit, '(a)') name//': without effect: '//names//'; --'//answer//' makes no run'
@@ -39,13 +42,30 @@ contains
     drawn = options%has('sketch')
     if (answer == '') drawn = drawn .or. options%has('animate') .or. pictures_of(model)
     if (options%has('sketch') .and. answer /= '' .and. answer /= 'structure') then
-      call list_arrows(model, names)
-      if (names /= '') write (unit, '(a)') name//': without effect: '//names//'; a run draws the arrows, and --'//answer// &
-        ' makes none'
+      call print_idle_arrows(unit, options, model)
     end if
     if (options%has('view') .and. (answer == 'structure' .or. .not. drawn)) &
       write (unit, '(a)') name//': without effect: --view; no picture of the mechanism is drawn'
   end subroutine print_unused_options
+
+  !> Write a line if arrows are requested, but the answer that is drawn has none: it makes no run, or shows a mode.
+  subroutine print_idle_arrows(unit, options, model)
+    integer, intent(in) :: unit                     !< Fortran unit to write to
+    type(command_line_type), intent(in) :: options  !< the command line, with an answer in place of a run
+    type(model_type), intent(in) :: model           !< the model
+    character(len=:), allocatable :: names, answer
+
+    call list_arrows(model, names)
+    if (names == '') return
+    answer = options%answer()
+    if (options%rest() /= '') answer = options%rest()
+    names = program_names(options%program)//': without effect: '//names
+    if (options%has('animate')) then
+      write (unit, '(a)') names//'; the film of a mode has no arrows, since its amplitude may be any'
+    else
+      write (unit, '(a)') names//'; a run draws the arrows, and --'//answer//' makes none'
+    end if
+  end subroutine print_idle_arrows
 
   !> List the requested arrows of pictures: "force_arrows, velocity_arrows".
   pure subroutine list_arrows(model, list)
