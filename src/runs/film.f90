@@ -10,6 +10,7 @@ module mech9_film
   use mech9_state, only: state_type
   use mech9_motion_event, only: motion_events_type
   use mech9_columns, only: columns_type
+  use mech9_applied_forces, only: applied_force_type
   use mech9_frame_motion, only: point_motion, link_motion
   implicit none
   private
@@ -38,6 +39,9 @@ module mech9_film
     real(wp), allocatable :: paths(:, :, :)      !< (3,points,path points) places of the points [m]
     integer, allocatable :: force_pairs(:)       !< pairs whose forces are drawn, by their coordinates
     real(wp), allocatable :: forces(:, :, :)     !< (3,pairs,frames) these forces; not allocated where none are drawn [N]
+    real(wp), allocatable :: moments(:, :, :)    !< (3,pairs,frames) their moments about the same points [N m]
+    type(applied_force_type), allocatable :: applied(:)   !< loads and weights; not allocated where no forces are drawn
+    real(wp), allocatable :: applied_vectors(:, :, :)     !< (3,applied,frames) their forces and torques [N, N m]
     real(wp), allocatable :: velocities(:, :, :)      !< (3,points,frames) of the points; not allocated where none are drawn [m/s]
     real(wp), allocatable :: accelerations(:, :, :)   !< (3,points,frames) the same [m/s^2]
     logical, allocatable :: hit(:, :, :)         !< (2,stops,frames) the end of the stop was hit since the frame before
@@ -53,8 +57,11 @@ module mech9_film
     real(wp), private :: latest_time = 0.0_wp
   contains
     procedure :: keep_point_motion
+    procedure :: keep_forces
     procedure :: note_contacts
+    procedure :: keeps_next
     procedure :: take
+    procedure :: take_forces
     procedure :: position
     procedure :: direction
     procedure :: local
@@ -63,12 +70,11 @@ module mech9_film
 contains
 
   !> A new film with room for the frames of a run, and for the values of its columns if these are given.
-  pure function new_film(mechanism, independent, outputs, columns, force_pairs) result(film)
+  pure function new_film(mechanism, independent, outputs, columns) result(film)
     type(mechanism_type), intent(in) :: mechanism        !< the mechanism
     logical, intent(in) :: independent(:)                !< (M) the coordinate is independent
     integer, intent(in) :: outputs                       !< expected number of outputs
     type(columns_type), intent(in), optional :: columns  !< columns of the rows that are taken, the time first
-    integer, intent(in), optional :: force_pairs(:)      !< pairs whose forces are drawn; none unless given
     type(film_type) :: film
     integer :: n, frames, points
 
@@ -88,10 +94,6 @@ contains
       film%units = columns%units(2:columns%count)
     end if
     allocate (film%values(size(film%names), frames), source=0.0_wp)
-    if (present(force_pairs)) then
-      film%force_pairs = force_pairs
-      allocate (film%forces(3, size(force_pairs), frames), source=0.0_wp)
-    end if
     allocate (film%hit(2, 0, frames), film%friction_coordinates(0), film%rates(0, frames), film%hit_since(2, 0))
     allocate (film%r(3, 3, n, frames), film%p(3, n, frames), source=0.0_wp)
     allocate (film%paths(3, size(mechanism%points), points), film%latest(3, size(mechanism%points), 3), source=0.0_wp)
@@ -106,6 +108,19 @@ contains
     if (velocities) allocate (self%velocities(3, size(self%paths, 2), size(self%times)), source=0.0_wp)
     if (accelerations) allocate (self%accelerations(3, size(self%paths, 2), size(self%times)), source=0.0_wp)
   end subroutine keep_point_motion
+
+  !> Let a new film keep the forces of pairs, loads and gravity.
+  pure subroutine keep_forces(self, force_pairs, applied)
+    class(film_type), intent(inout) :: self              !< a film without frames so far
+    integer, intent(in) :: force_pairs(:)                !< pairs whose forces are drawn, by their coordinates
+    type(applied_force_type), intent(in) :: applied(:)   !< loads and weights
+
+    self%force_pairs = force_pairs
+    self%applied = applied
+    allocate (self%forces(3, size(force_pairs), size(self%times)), source=0.0_wp)
+    allocate (self%moments(3, size(force_pairs), size(self%times)), source=0.0_wp)
+    allocate (self%applied_vectors(3, size(applied), size(self%times)), source=0.0_wp)
+  end subroutine keep_forces
 
   !> Note the impacts on stops before the next output, of which no position shows anything, and keep the rates of pairs with friction.
   !> Without this a film has neither.
@@ -131,29 +146,42 @@ contains
     end do
   end subroutine note_contacts
 
+  !> Whether the next output of the run becomes a frame: its turn has come, or it is the last one.
+  pure logical function keeps_next(self)
+    class(film_type), intent(in) :: self   !< the film
+
+    keeps_next = self%n_frames < size(self%times) .and. &
+                 (mod(self%n_outputs, self%frame_stride) == 0 .or. self%n_outputs + 1 == self%expected)
+  end function keeps_next
+
   !> The next output of the run is kept if its turn has come or if it is the last one.
-  pure subroutine take(self, mechanism, plan, state, row, force)
+  pure subroutine take(self, mechanism, plan, state, row)
     class(film_type), intent(inout) :: self        !< poses and values at the outputs of the run
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(plan_type), intent(in) :: plan            !< the plan of the mechanism
     type(state_type), intent(in) :: state          !< positions known
     real(wp), intent(in) :: row(:)                 !< the columns at this output, as far as the film has room for them
-    real(wp), intent(in), optional :: force(:, :)  !< (3,M) forces in the pairs, where they are drawn [N]
-    logical :: last
 
-    last = self%n_outputs + 1 == self%expected
-    if (mod(self%n_outputs, self%path_stride) == 0 .or. last) call take_points(self, mechanism, plan, state)
-    if (self%n_frames < size(self%times) .and. (mod(self%n_outputs, self%frame_stride) == 0 .or. last)) then
-      ! gfortran forms the bounds of an absent array from memory that was never set, so that absent forces are not handed on
-      if (present(force)) then
-        call take_frame(self, plan, state, row, force)
-      else
-        call take_frame(self, plan, state, row)
-      end if
+    if (mod(self%n_outputs, self%path_stride) == 0 .or. self%n_outputs + 1 == self%expected) &
+      call take_points(self, mechanism, plan, state)
+    if (self%keeps_next()) then
+      call take_frame(self, plan, state, row)
       call take_point_motion(self, mechanism, plan, state)
     end if
     self%n_outputs = self%n_outputs + 1
   end subroutine take
+
+  !> Keep the forces of the latest frame.
+  pure subroutine take_forces(self, force, moment, applied)
+    class(film_type), intent(inout) :: self   !< the film, which keeps forces
+    real(wp), intent(in) :: force(:, :)       !< (3,M) in the pairs [N]
+    real(wp), intent(in) :: moment(:, :)      !< (3,M) in the pairs [N m]
+    real(wp), intent(in) :: applied(:, :)     !< (3,applied) of loads and gravity [N, N m]
+
+    self%forces(:, :, self%n_frames) = force(:, self%force_pairs)
+    self%moments(:, :, self%n_frames) = moment(:, self%force_pairs)
+    self%applied_vectors(:, :, self%n_frames) = applied
+  end subroutine take_forces
 
   !> The paths of the points are continued to the present output.
   pure subroutine take_points(self, mechanism, plan, state)
@@ -209,12 +237,11 @@ contains
   end subroutine curve_to
 
   !> The present position and the values of the columns are kept as a frame.
-  pure subroutine take_frame(self, plan, state, row, force)
+  pure subroutine take_frame(self, plan, state, row)
     class(film_type), intent(inout) :: self  !< poses and values at the outputs of the run
     type(plan_type), intent(in) :: plan      !< the plan of the mechanism
     type(state_type), intent(in) :: state    !< position and motion of the mechanism
     real(wp), intent(in) :: row(:)           !< (columns) values of the columns at this output, the time first
-    real(wp), intent(in), optional :: force(:, :)  !< (3,M) forces in the pairs [N]
     real(wp) :: omega(3), v(3)
     integer :: i
 
@@ -224,7 +251,6 @@ contains
     self%hit(:, :, self%n_frames) = self%hit_since
     self%hit_since = .false.
     self%rates(:, self%n_frames) = state%dq(self%friction_coordinates)
-    if (present(force) .and. allocated(self%forces)) self%forces(:, :, self%n_frames) = force(:, self%force_pairs)
     do i = 1, plan%n_links
       call link_motion(plan, state, i, self%r(:, :, i, self%n_frames), self%p(:, i, self%n_frames), omega, v)
     end do

@@ -15,6 +15,7 @@ module mech9_row_source
   use mech9_columns, only: columns_type, kinematic_columns
   use mech9_contact_columns, only: append_contacts, fill_contacts
   use mech9_result_units, only: unit_of_parameter
+  use mech9_applied_forces, only: applied_forces_type
   use mech9_film, only: film_type
   use mech9_masks, only: numbers_of
   use mech9_force_record, only: force_record_type, reacting_pairs
@@ -36,6 +37,7 @@ module mech9_row_source
     class(sensitivity_type), allocatable :: sensitivity  !< finds derivatives by parameters, where it is allocated
     type(varied_record_type) :: varied     !< finds those of forces and energies
     type(film_type), allocatable :: film   !< takes the position of each row, where it is allocated
+    type(applied_forces_type) :: applied   !< loads and weights, where the film keeps forces
     type(quantity_record_type) :: quantities   !< of the whole run
     class(section_record_type), allocatable :: section   !< takes the points of a section, where it is allocated
     type(tangent_type), allocatable, private :: tangents(:)   !< (P) of the constants, where quantities need those of joints of laws
@@ -222,8 +224,8 @@ contains
       if (.not. allocated(err)) call go_on_with_section(self, t, err)
     end if
     if (.not. allocated(err)) call fill_row(self, rows(:, count + self%outputs + 1), err)
+    if (.not. allocated(err) .and. allocated(self%film)) call film_row(self, rows(:, count + self%outputs + 1), err)
     if (.not. allocated(err)) then
-      if (allocated(self%film)) call film_row(self, rows(:, count + self%outputs + 1))
       self%last_output = t
       self%visited = 0
       if (.not. allocated(self%sensitivity) .and. self%quantities%is_empty()) then
@@ -452,19 +454,26 @@ contains
     end if
   end subroutine fill_row
 
-  !> Show the film the present position and its row.
-  subroutine film_row(self, row)
+  !> Show the film the present position, its row and its forces. Fails where a load fails.
+  subroutine film_row(self, row, err)
     class(row_source_type), intent(inout) :: self       !< the row source, with a film
     real(wp), intent(in) :: row(:)                      !< numbers of the row
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(plan_type), pointer :: plan
     type(state_type), pointer :: state
+    real(wp), allocatable :: vectors(:, :)
+    logical :: kept
 
     call self%simulation%present(plan, state)
-    call self%film%note_contacts(self%simulation%model%mechanism, self%simulation%events, state%t)
-    if (self%forces%wanted) then
-      call self%film%take(self%simulation%model%mechanism, plan, state, row, self%forces%reactions%force)
-    else
-      call self%film%take(self%simulation%model%mechanism, plan, state, row)
-    end if
+    associate (mechanism => self%simulation%model%mechanism, film => self%film)
+      call film%note_contacts(mechanism, self%simulation%events, state%t)
+      kept = film%keeps_next()
+      call film%take(mechanism, plan, state, row)
+      if (.not. (kept .and. allocated(film%forces))) return
+      call self%simulation%present_for_forces(plan, state)
+      allocate (vectors(3, size(film%applied)))
+      call self%applied%find(mechanism, plan, state, vectors, err)
+      if (.not. allocated(err)) call film%take_forces(self%forces%reactions%force, self%forces%reactions%moment, vectors)
+    end associate
   end subroutine film_row
 end module mech9_row_source

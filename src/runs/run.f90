@@ -8,6 +8,7 @@ module mech9_run
   use mech9_model_motion, only: model_motion_type
   use mech9_film, only: new_film
   use mech9_masks, only: numbers_of
+  use mech9_applied_forces, only: new_applied_forces
   use mech9_row_source, only: row_source_type, new_row_source
   implicit none
   private
@@ -56,12 +57,11 @@ contains
 
     outputs = model%request%time%intervals + 1
     associate (source => self%source, independent => model%problem%partition%independent())
+      source%film = new_film(model%mechanism, independent, outputs, source%columns)
       if (model%request%output%force_arrows) then
-        source%film = new_film(model%mechanism, independent, outputs, source%columns, &
-                               numbers_of(model%request%output%drawn_forces(size(model%mechanism%pairs)) .and. &
-                                          model%mechanism%structure%stands_alone()))
-      else
-        source%film = new_film(model%mechanism, independent, outputs, source%columns)
+        call new_applied_forces(model%mechanism, source%applied)
+        call source%film%keep_forces(numbers_of(model%request%output%drawn_forces(size(model%mechanism%pairs)) .and. &
+                                                model%mechanism%structure%stands_alone()), source%applied%items)
       end if
       call source%film%keep_point_motion(model%request%output%velocity_arrows, model%request%output%acceleration_arrows)
     end associate

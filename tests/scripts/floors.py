@@ -12,7 +12,7 @@ FLOORS = ['base', 'system', 'numerics', 'numerics/minima', 'spatial', 'structure
           'ode', 'dynamics', 'dynamics/planning', 'dynamics/variations', 'analyses/sensitivity', 'dynamics/sensitivity', 'reactions', 'simulation/integration',
           'simulation/events', 'simulation',
           'analyses/equilibrium', 'analyses/planar_runs', 'analyses', 'wording', 'runs', 'runs/long_term', 'studies', 'synthesis', 'input/document', 'input', 'drafts', 'searches', 'output/layout', 'output', 'interchange/xml', 'interchange', 'reports',
-          'pictures/plots', 'pictures/scene',
+          'pictures/plots', 'pictures/scene', 'pictures/arrows',
           'pictures/films', 'terminal', 'session/command', 'session/words', 'facade', 'api', 'session/results', 'session/study', 'session/synthesis', 'session',
           'dialogue/questions',
           'dialogue',

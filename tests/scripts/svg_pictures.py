@@ -42,9 +42,9 @@ def picture_of(text):
 
 
 def turned(q, v):
+    """The square of the length of a quaternion is a factor, 1 but for arrows round an axis."""
     w, u = q[0], np.array(q[1:])
-    t = 2 * np.cross(u, v)
-    return v + w * t + np.cross(u, t)
+    return (w * w - u @ u) * v + 2 * (u @ v) * u + 2 * w * np.cross(u, v)
 
 
 def nodes_of(film, frame):

@@ -51,8 +51,8 @@ module mech9_output_grammar
     item_row_type('output', 'gradients', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
                   'derivatives of the quantities by each parameter, without columns of their own', '.true.', seldom=.true.), &
     item_row_type('output', 'force_arrows', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
-                  'arrows of the forces in the pairs in both pictures, the longest for the largest force', '.true.', &
-                  seldom=.true.), &
+                  'arrows of forces and moments in pairs, loads and weights in both pictures, the longest for the largest force', &
+                  '.true.', seldom=.true.), &
     item_row_type('output', 'velocity_arrows', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
                   'arrows of the velocities of the points in both pictures, the longest for the largest velocity', '.true.', &
                   seldom=.true.), &

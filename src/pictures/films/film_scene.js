@@ -7,7 +7,8 @@ for (const g of scene.children) elements[g.dataset.i - 1] = g;
 // The view and its state; `zoom` and `aside` are relative to a picture drawn by `film.scale` around `film.middle`.
 let view = film.view.slice(), zoom = 1, aside = [0, 0], letters = 1, shown = 0, order = "";
 
-// The places of the nodes in a frame: quaternions turn them with their links, and the view projects them.
+// The places of the nodes in a frame: quaternions turn them with their links, and the view projects them. The square of the
+// length of a quaternion is a factor, 1 but for arrows round an axis.
 function place(frame) {
   const poses = film.poses[frame], unit = film.unit*film.scale;
   for (let i = 0; i < nodes; i++) {
@@ -15,10 +16,11 @@ function place(frame) {
     const at = 7*(film.links[i] - 1);
     if (at >= 0) {
       const w = poses[at + 3]/1e5, a = poses[at + 4]/1e5, b = poses[at + 5]/1e5, c = poses[at + 6]/1e5;
-      const p = 2*(b*z - c*y), q = 2*(c*x - a*z), r = 2*(a*y - b*x);
-      x += w*p + b*r - c*q + poses[at];
-      y += w*q + c*p - a*r + poses[at + 1];
-      z += w*r + a*q - b*p + poses[at + 2];
+      const s = w*w - a*a - b*b - c*c, d = 2*(a*x + b*y + c*z), e = 2*w;
+      const p = b*z - c*y, q = c*x - a*z, r = a*y - b*x;
+      x = s*x + d*a + e*p + poses[at];
+      y = s*y + d*b + e*q + poses[at + 1];
+      z = s*z + d*c + e*r + poses[at + 2];
     }
     xy[2*i] = film.middle[0] + unit*(view[0]*x + view[1]*y + view[2]*z);
     xy[2*i + 1] = film.middle[1] - unit*(view[3]*x + view[4]*y + view[5]*z);

@@ -197,12 +197,22 @@ contains
       call page%put('[')
       do i = 1, count
         call put_steps((film%p(:, links(i), frame) - centre)/unit, page)
-        call put_steps(steps*quaternion(film%r(:, :, links(i), frame)), page)
+        call put_steps(steps*turn_of(film%r(:, :, links(i), frame)), page)
       end do
       call page%line('],')
     end do
     call page%line('],')
   end subroutine put_frames
+
+  !> The quaternion of a rotation times a factor, as that of an arrow round an axis: the square of its length is the factor.
+  pure function turn_of(r) result(q)
+    real(wp), intent(in) :: r(3, 3)    !< the rotation times the factor
+    real(wp) :: q(4), factor
+
+    factor = norm2(r(:, 1))
+    q = 0.0_wp
+    if (factor > 0.0_wp) q = sqrt(factor)*quaternion(r/factor)
+  end function turn_of
 
   !> Append, for each state, a letter for each frame: 1 where it holds.
   subroutine put_states(scene, page)

@@ -7,7 +7,9 @@ module mech9_mechanism_pictures
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_force_arrows, only: arrow_type, find_arrows, tips_of, take_arrows, add_arrows
+  use mech9_arrow, only: arrow_type
+  use mech9_force_arrows, only: find_arrows
+  use mech9_arrow_drawing, only: ends_of, take_arrows, add_arrows
   use mech9_film, only: film_type, new_film
   use mech9_view, only: view_type
   use mech9_skeleton, only: skeleton_type, make_skeleton
@@ -122,11 +124,11 @@ contains
     logical :: page
 
     page = moving .and. kind_of_picture(path) == 'html'
-    call find_arrows(model%mechanism, film, skeleton%size, arrows)
-    call fit_projection(model%mechanism, film, skeleton, view, page .and. .not. planar, tips_of(arrows, film), projection)
+    call find_arrows(model%mechanism, film, skeleton%size, view%toward, arrows)
+    call fit_projection(model%mechanism, film, skeleton, view, page .and. .not. planar, ends_of(arrows, film, view), projection)
     allocate (poses(0))
     if (allocated(self%poses)) poses = self%poses
-    call make_scene(model%mechanism, film, skeleton, projection, planar, self%with_masses, poses, scene)
+    call make_scene(model%mechanism, film, skeleton, projection, planar, self%with_masses .or. allocated(film%forces), poses, scene)
     shown = film
     if (size(arrows) > 0) then
       call take_arrows(arrows, film, projection, shown)

@@ -47,22 +47,22 @@ contains
 
   !> Choose the projection in which the whole motion fits the page. A picture that can be `turned` has room for the
   !> mechanism as it is seen from every side.
-  subroutine fit_projection(mechanism, film, skeleton, view, turned, tips, projection)
+  subroutine fit_projection(mechanism, film, skeleton, view, turned, ends, projection)
     type(mechanism_type), intent(in) :: mechanism     !< the mechanism
     type(film_type), intent(in) :: film               !< poses and values at the outputs of the run
     type(skeleton_type), intent(in) :: skeleton       !< places at which the pairs are drawn
     type(view_type), intent(in) :: view               !< direction from which the mechanism is seen
     logical, intent(in) :: turned                     !< the reader of the picture can turn the mechanism
-    real(wp), intent(in) :: tips(:, :, :)             !< (3,arrows,frames) tips of arrows, which are seen too [m]
+    real(wp), intent(in) :: ends(:, :, :)             !< (3,ends,frames) ends of arrows, which are seen too [m]
     type(projection_type), intent(out) :: projection  !< from space to the page
     type(box_type) :: box
     real(wp) :: middle(3), extent(2), diagonal
     integer :: i, frame
 
     call enclose_motion(mechanism, film, skeleton, view, box)
-    do frame = 1, size(tips, 3)
-      do i = 1, size(tips, 2)
-        call enclose(view, tips(:, i, frame), box)
+    do frame = 1, size(ends, 3)
+      do i = 1, size(ends, 2)
+        call enclose(view, ends(:, i, frame), box)
       end do
     end do
     middle = 0.5_wp*(box%low + box%high)
