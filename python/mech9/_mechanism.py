@@ -376,14 +376,19 @@ class Mechanism:
         """The profile of a cam, of which &cam describes the follower: the columns of --cam, and its entry of a report as `report`."""
         return self._results(lib.cam, lambda m, stop, out: (m, count(number, 'number', 1), out))
 
-    def study(self, threads: int = 1, dynamics: bool | None = None, *, progress: Callable[[float], Any] | None = None,
-              **values: Any) -> Any:
+    def study(self, threads: int = 1, dynamics: bool | None = None, *, carry: str | None = None,
+              progress: Callable[[float], Any] | None = None, **values: Any) -> Any:
         """Make all runs of &study, or one for each of the values of parameters or numbers: study(crank=np.linspace(0.2, 0.4, 5)).
 
         Several lists of values have the same length. The answer is an xarray.Dataset over `run`, with parameters, quantities and
-        exit codes; without xarray it is Results. dynamics: whether forces move the mechanism; by default where a coordinate has no drive.
+        exit codes, and with the points of a &section as `section.q1` and so on over `section_point`; without xarray it is Results.
+        carry: 'forwards', 'backwards' or 'both' begin each run where the one before ended. dynamics: whether forces move the mechanism; by default where a coordinate has no drive.
         progress as for kinematics. A warning tells what a procedure raised that made runs fail.
         """
+        if not values and carry is not None:
+            changed = self.copy()
+            call(lib.mechanism_apply, changed._handle, text_of(f'study.carry={written(carry)}'))
+            return changed.study(threads, dynamics, progress=progress)
         if not values:
             return self._study(threads, dynamics, {}, progress)
         changed = self.copy()
@@ -405,7 +410,7 @@ class Mechanism:
         with tempfile.TemporaryDirectory(prefix='mech9_') as folder:
             path = os.path.join(folder, 'values.dat')
             np.savetxt(path, np.column_stack(columns), fmt='%.17g')
-            changed.remove('study').add('study', kind='list', file=path)
+            changed.remove('study').add('study', kind='list', file=path, **({} if carry is None else {'carry': carry}))
             return changed._study(threads, dynamics, names, progress)
 
     def _study(self, threads: int, dynamics: bool | None, names: dict[str, str], progress: Callable[[float], Any] | None) -> Any:
@@ -418,6 +423,8 @@ class Mechanism:
             return runs
         data = {names.get(name, name): ('run', runs[name].astype(int) if name == 'exit_code' else runs[name])
                 for name in runs.names if name != 'run'}
+        if 'section' in runs.matrices:
+            data |= {f'section.{name}': ('section_point', runs.section[name]) for name in runs.section.names}
         return xarray.Dataset(data, coords={'run': runs['run'].astype(int)})
 
     def linear(self) -> Linear:

@@ -108,6 +108,7 @@ contains
     type(results_type), intent(inout) :: found             !< gets them
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     character(len=:), allocatable :: names(:), units(:)
+    real(wp), allocatable :: points(:, :)
     integer :: status
 
     call run%columns(names, units)
@@ -125,22 +126,22 @@ contains
     call put_texts(names, found%number_names)
     call put_texts(units, found%number_units)
     call run%gradients(found%derivatives)
-    call take_section(run, found)
+    call run%section(names, points, units)
+    call put_section(names, points, units, found)
   end subroutine take_run
 
-  !> Take the points of the section of a run as a matrix, with the units of its columns. Its rows have no names.
-  subroutine take_section(run, found)
-    type(run_type), intent(inout) :: run                   !< the run
+  !> Put the points of a section as a matrix, with the units of its columns. Its rows have no names.
+  subroutine put_section(names, points, units, found)
+    character(len=*), intent(in) :: names(:)               !< (columns) none without a section
+    real(wp), intent(in) :: points(:, :)                   !< (columns,points)
+    character(len=*), intent(in) :: units(:)               !< (columns)
     type(results_type), intent(inout) :: found             !< gets them
-    character(len=:), allocatable :: names(:), units(:)
     character(len=1), allocatable :: nameless(:)
-    real(wp), allocatable :: points(:, :)
 
-    call run%section(names, points, units)
     if (size(names) == 0) return
     allocate (found%matrices(1), nameless(0))
     call put_matrix('section', transpose(points), nameless, nameless, names, units, found%matrices(1))
-  end subroutine take_section
+  end subroutine put_section
 
   !> Find the first Lyapunov exponents of a motion under forces.
   integer(c_int) function find_exponents(mechanism, count, stop, results, error) bind(c, name='mech9_exponents') result(code)
@@ -379,6 +380,8 @@ contains
     type(study_type), intent(in) :: study   !< the study
     type(results_type), pointer :: found
     type(c_text_type), allocatable :: parameters(:), quantities(:), ends(:)
+    character(len=:), allocatable :: names(:), units(:)
+    real(wp), allocatable :: points(:, :)
     integer :: i, n, m
 
     n = size(study%parameters, 1)
@@ -394,6 +397,8 @@ contains
     do i = 1, found%count
       found%rows(:, i) = [real(i, wp), study%parameters(:, i), study%quantities(:, i), real(study%exit_codes(i), wp)]
     end do
+    call study%section(names, points, units)
+    call put_section(names, points, units, found)
     runs_of = show_results(found)
   end function runs_of
 

@@ -13,6 +13,8 @@ module mech9_recorded_study
   use mech9_study_sink, only: study_sink_type
   use mech9_study_check, only: check_study
   use mech9_study_runs, only: study_runs_type
+  use mech9_section_record, only: section_record_type
+  use mech9_study_section, only: begin_section, add_points
   use mech9_study_threads, only: make_in_threads
   use mech9_varied_document, only: varied_document_type
   use mech9_checked_mechanism, only: checked_mechanism_type
@@ -31,7 +33,9 @@ module mech9_recorded_study
     real(wp), allocatable :: parameters(:, :)             !< (parameters,runs) in the units of the data file
     real(wp), allocatable :: quantities(:, :)             !< (quantities,runs) in their units; not numbers where the run failed
     integer, allocatable :: exit_codes(:)                 !< (runs) 0, or the code with which the run failed
+    class(section_record_type), allocatable, private :: points_of_runs   !< of the section; not allocated: there is none
   contains
+    procedure :: section
     procedure :: make_kinematics
     procedure :: make_dynamics
   end type recorded_study_type
@@ -104,6 +108,8 @@ contains
       call mechanism%take_variable(program, variable)
       call allocate_arrays(self, model, model%request%study%runs)
       makers = max(1, min(threads, model%request%study%runs, most_threads))
+      if (model%request%study%carries()) makers = 1
+      call begin_section(model, self%points_of_runs, err)
       if (present(interruption)) then
         call make_runs(self, model, variable, makers, interruption, err)
       else
@@ -162,6 +168,26 @@ contains
     self%exit_codes = 0
   end subroutine allocate_arrays
 
+  !> The points of the sections of all runs, where the mechanism has a group &section: columns run, those of the parameters, point, t and
+  !> those of the runs. There are no columns without a section.
+  subroutine section(self, names, points, units)
+    class(recorded_study_type), intent(in) :: self                      !< the study
+    character(len=:), allocatable, intent(out) :: names(:)              !< (columns)
+    real(wp), allocatable, intent(out) :: points(:, :)                  !< (columns,points) in the units of the columns
+    character(len=:), allocatable, intent(out), optional :: units(:)    !< (columns)
+    type(string_type) :: none(0)
+
+    if (allocated(self%points_of_runs)) then
+      points = self%points_of_runs%points(:, :self%points_of_runs%count)
+      names = self%points_of_runs%names
+      if (present(units)) units = self%points_of_runs%units
+    else
+      allocate (points(0, 0))
+      call texts_of_one_length(none, names)
+      if (present(units)) call texts_of_one_length(none, units)
+    end if
+  end subroutine section
+
   !> No run was made before.
   logical function is_made(self, place)
     class(memory_sink_type), intent(inout) :: self         !< takes the runs
@@ -195,6 +221,7 @@ contains
     self%study%parameters(:, self%taken) = run%values
     self%study%quantities(:, self%taken) = run%quantities
     self%study%exit_codes(self%taken) = run%exit_code
+    if (allocated(self%study%points_of_runs)) call add_points(self%study%points_of_runs, run)
   end subroutine show_run
 
   !> Tell how far the study is.

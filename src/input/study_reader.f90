@@ -17,6 +17,9 @@ module mech9_study_reader
   private
   public :: read_study
 
+  !> Most sets of values with which two runs are made.
+  integer, parameter :: most_sets = 1000000000
+
 contains
 
   !> Read the study, and hold the parameters against what it needs of them. Without a group &study its kind stays empty.
@@ -51,6 +54,12 @@ contains
           call diagnostics%add(span_of(group, 'kind', 1), 'sobol is for at most '//to_text(most_sobol_dimensions)// &
                                ' parameters, and there are '//to_text(size(parameters))//'; latin is for any number')
       end select
+      study%sets = study%runs
+      if (has_name(group, 'carry')) study%carry = get_text(group, 'carry')
+      if (study%carry == 'both') then
+        if (study%sets > most_sets) call diagnostics%add(group%span, 'there are too many runs to make each twice')
+        study%runs = 2*min(study%sets, most_sets)
+      end if
     end associate
   end subroutine read_study
 

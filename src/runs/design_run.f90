@@ -7,29 +7,41 @@ module mech9_design_run
   use mech9_variable_model, only: variable_model_type
   use mech9_simulation, only: interruption_type
   use mech9_run, only: run_type
-  use mech9_row_source, only: find_columns
+  use mech9_row_source, only: find_columns, find_section
+  use mech9_section_record, only: section_record_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
   use mech9_columns, only: columns_type
   use mech9_force_record, only: force_record_type
   use mech9_link_record, only: link_record_type
   use mech9_quantity_record, only: quantity_record_type
   implicit none
   private
-  public :: run_design, find_design_gradient, find_quantities, columns_of_runs
+  public :: run_design, run_ending_type, find_design_gradient, find_quantities, columns_of_runs, section_of_runs
+
+  !> The ending of a run, and its points: what is kept beside its quantities.
+  type :: run_ending_type
+    real(wp), allocatable :: points(:, :)       !< (columns,points) of its section; without one it is not allocated
+    real(wp) :: range(2) = [huge(1.0_wp), -huge(1.0_wp)]   !< least and greatest difference from the value of the section
+    real(wp), allocatable :: position(:)        !< (M) coordinates at the end [rad, m]
+    real(wp), allocatable :: velocity(:)        !< (M) their rates there [rad/s, m/s]
+  end type run_ending_type
 
 contains
 
   !> Make the run of a model and take its quantities. Fails as the run would; the quantities are then of no use, and rows have
   !> their numbers up to the failure.
-  subroutine run_design(model, numbers, err, rows, interruption)
+  subroutine run_design(model, numbers, err, rows, interruption, ending)
     type(model_type), intent(inout), target :: model      !< gets the tolerances where an accuracy is requested
     real(wp), intent(out) :: numbers(:)                   !< (quantities)
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
     real(wp), allocatable, intent(inout), optional :: rows(:, :)   !< (columns,outputs) gets the columns of all outputs that are
                                                           !< reached, where it is allocated
     class(interruption_type), intent(inout), optional, target :: interruption   !< is asked whether the run shall stop
+    type(run_ending_type), intent(out), optional :: ending   !< the points of the section and the state at the end
     type(run_type), target :: run
 
-    call make_run(model, run, err, rows=rows, interruption=interruption)
+    call make_run(model, run, err, rows=rows, interruption=interruption, ending=ending)
     if (.not. allocated(err) .and. size(numbers) > 0) numbers = run%source%quantities%numbers
   end subroutine run_design
 
@@ -51,7 +63,7 @@ contains
   end subroutine find_design_gradient
 
   !> Make a run from its assembly to its end.
-  subroutine make_run(model, run, err, variable, rows, interruption)
+  subroutine make_run(model, run, err, variable, rows, interruption, ending)
     type(model_type), intent(inout), target :: model      !< gets the tolerances where an accuracy is requested
     type(run_type), intent(inout), target :: run          !< made anew, and closed on return
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
@@ -59,14 +71,32 @@ contains
     real(wp), allocatable, intent(inout), optional :: rows(:, :)   !< (columns,outputs) gets the columns of all outputs that are
                                                           !< reached, where it is allocated
     class(interruption_type), intent(inout), optional, target :: interruption   !< is asked whether the run shall stop
+    type(run_ending_type), intent(inout), optional :: ending   !< gets the points of the section and the state at the end
 
     if (present(interruption)) call interruption%begin_run()
     call run%motion%assemble(model, err)
     if (.not. allocated(err)) call run%prepare(model, err, variable)
+    if (present(ending) .and. .not. allocated(err)) call run%source%begin_section(err)
     if (.not. allocated(err)) call run%motion%find_tolerances(model, err, interruption=interruption)
     if (.not. allocated(err)) call run%make(err, rows, interruption)
+    if (present(ending) .and. .not. allocated(err)) call keep_ending(run, ending)
     call run%close()
   end subroutine make_run
+
+  !> Keep the ending of a run.
+  subroutine keep_ending(run, ending)
+    type(run_type), intent(in) :: run                       !< at its end
+    type(run_ending_type), intent(inout) :: ending          !< gets it
+    type(plan_type), pointer :: plan
+    type(state_type), pointer :: state
+
+    call run%motion%simulation%present(plan, state)
+    ending%position = state%q
+    ending%velocity = state%dq
+    if (.not. allocated(run%source%section)) return
+    ending%points = run%source%section%points(:, :run%source%section%count)
+    ending%range = run%source%section%range
+  end subroutine keep_ending
 
   !> Find the columns of the quantities that the runs of a model will have. Fails with exit_data where one is not recorded.
   subroutine find_quantities(model, quantities, err)
@@ -89,4 +119,16 @@ contains
     call find_columns(model, model%program == dynamics .and. model%request%output%energies, &
                       model%request%solver%accuracy > 0.0_wp .and. .not. model%is_driven(), columns, forces, links)
   end subroutine columns_of_runs
+
+  !> The section that the runs of a model will have, without points. Fails with exit_data where the column of its value is not recorded.
+  subroutine section_of_runs(model, section, err)
+    type(model_type), intent(in) :: model                   !< the model
+    class(section_record_type), allocatable, intent(out) :: section   !< not allocated: the model requests none
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    type(columns_type) :: columns
+
+    if (.not. model%request%section%is_wanted) return
+    call columns_of_runs(model, columns)
+    call find_section(model, columns, model%request%solver%accuracy > 0.0_wp .and. .not. model%is_driven(), section, err)
+  end subroutine section_of_runs
 end module mech9_design_run

@@ -27,7 +27,7 @@ module mech9_row_source
   use mech9_section_record, only: section_record_type, row_filler_type, new_section_record
   implicit none
   private
-  public :: row_source_type, new_row_source, find_columns
+  public :: row_source_type, new_row_source, find_columns, find_section
 
   type, extends(row_filler_type) :: row_source_type
     class(simulation_type), pointer, private :: simulation => null()   !< not owned
@@ -166,24 +166,36 @@ contains
   subroutine begin_section(self, err)
     class(row_source_type), intent(inout) :: self       !< the row source, before the start
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+
+    if (.not. self%simulation%model%request%section%is_wanted) return
+    call find_section(self%simulation%model, self%columns, self%simulation%with_error, self%section, err)
+  end subroutine begin_section
+
+  !> The record of the section that a model requests, with the columns of its run. Fails with exit_data where the column of its value is
+  !> not recorded.
+  subroutine find_section(model, columns, with_error, record, err)
+    type(model_type), intent(in) :: model                  !< the model
+    type(columns_type), intent(in) :: columns              !< those of its run
+    logical, intent(in) :: with_error                      !< an estimated error is the last one before derivatives
+    class(section_record_type), allocatable, intent(out) :: record   !< with its headings; without points
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    type(section_record_type), allocatable :: made
     character(len=:), allocatable :: remedy, names(:), units(:)
     integer :: n
     logical :: found
 
-    if (.not. self%simulation%model%request%section%is_wanted) return
-    allocate (self%section)
-    ! an estimated error, the last column of a motion, is known at outputs alone
-    n = self%columns%count - self%columns%sensitivities - merge(1, 0, self%simulation%with_error)
-    associate (model => self%simulation%model, columns => self%columns)
-      call texts_of_one_length(columns%names(:n), names)
-      call texts_of_one_length(columns%units(:n), units)
-      call new_section_record(model, names, units, columns%motion, self%section, found)
-      if (found) return
-      call find_remedy(model%request%section%column, model, columns, remedy)
-      call raise(err, exit_data, 'the section is by column '''//model%request%section%column//''', which is not recorded'//remedy, &
-                 model%request%section%place)
-    end associate
-  end subroutine begin_section
+    ! an estimated error is known at outputs alone
+    n = columns%count - columns%sensitivities - merge(1, 0, with_error)
+    call texts_of_one_length(columns%names(:n), names)
+    call texts_of_one_length(columns%units(:n), units)
+    allocate (made)
+    call new_section_record(model, names, units, columns%motion, made, found)
+    call move_alloc(made, record)
+    if (found) return
+    call find_remedy(model%request%section%column, model, columns, remedy)
+    call raise(err, exit_data, 'the section is by column '''//model%request%section%column//''', which is not recorded'//remedy, &
+               model%request%section%place)
+  end subroutine find_section
 
   !> Add the points of the section up to a time.
   subroutine go_on_with_section(self, t, err)

@@ -19,9 +19,10 @@ contains
     type(parameter_type), intent(in) :: parameters(:)    !< with ranges, or values and spreads
     integer, intent(in) :: run                           !< number of the run, 1 to study%runs
     real(wp), intent(out) :: values(:)                   !< (parameters) in the units of the file
-    integer :: i, rest
+    integer :: i, rest, set
 
-    rest = run - 1
+    set = study%set_of(run)
+    rest = set - 1
     do i = size(parameters), 1, -1
       select case (study%kind)
       case ('grid')
@@ -29,7 +30,7 @@ contains
         values(i) = on_grid(parameters(i), mod(rest, parameters(i)%count))
         rest = rest/parameters(i)%count
       case ('list')
-        values(i) = study%list(i, run)
+        values(i) = study%list(i, set)
       case ('latin')
         values(i) = quantile(parameters(i), latin_at(study%seed, run, i, study%runs))
       case ('sobol')

@@ -10,7 +10,7 @@ module mech9_run_maker
   use mech9_study_values, only: values_of_run
   use mech9_simulation, only: interruption_type
   use mech9_columns, only: columns_type
-  use mech9_design_run, only: run_design, columns_of_runs
+  use mech9_design_run, only: run_design, run_ending_type, columns_of_runs
   implicit none
   private
   public :: made_run_type, run_maker_type
@@ -21,6 +21,8 @@ module mech9_run_maker
     real(wp), allocatable :: values(:)              !< (parameters) in the units of the file
     real(wp), allocatable :: quantities(:)          !< (quantities) NaN where the run failed
     real(wp), allocatable :: rows(:, :)             !< (columns,outputs) where they are kept; NaN from a failure on
+    real(wp), allocatable :: points(:, :)           !< (columns,points) of the section, where there is one
+    real(wp) :: range(2) = [huge(1.0_wp), -huge(1.0_wp)]   !< least and greatest difference from the value of the section
     integer :: exit_code = exit_done                !< with which a single run of these values ends
     type(error_type), allocatable :: failure        !< of a run that failed; not explained yet
   end type made_run_type
@@ -33,6 +35,7 @@ module mech9_run_maker
     integer :: n_quantities = 0
     integer :: n_columns = 0                                     !< of the rows that are kept; 0: none are kept
     integer :: n_outputs = 0                                     !< rows of a run
+    type(run_ending_type) :: ending                              !< of the last run, where it may be carried on
   contains
     procedure :: begin
     procedure :: make
@@ -66,7 +69,8 @@ contains
     shape_of_rows = [self%n_columns, self%n_outputs]
   end function shape_of_rows
 
-  !> Make a run. Its numbers depend on the number of the run alone, not on the runs that were made before.
+  !> Make a run. Its numbers depend on the number of the run alone, unless the study carries states on: then the runs before it were made
+  !> by this maker, and it begins where the last one ended; after a failure it begins as the data file says.
   subroutine make(self, number, run, interruption)
     class(run_maker_type), intent(inout) :: self   !< the maker
     integer, intent(in) :: number                  !< of the run in the whole study, from 1
@@ -82,9 +86,31 @@ contains
     if (self%n_columns > 0) &
       allocate (run%rows(self%n_columns, self%n_outputs), source=ieee_value(1.0_wp, ieee_quiet_nan))
     call self%varied%at(run%values, model, run%failure)
-    if (.not. allocated(run%failure)) call run_design(model, run%quantities, run%failure, run%rows, interruption)
-    if (.not. allocated(run%failure)) return
+    if (.not. allocated(run%failure)) then
+      if (self%study%carries()) call begin_at_ending(self%ending, model)
+      call run_design(model, run%quantities, run%failure, run%rows, interruption, self%ending)
+    end if
+    if (.not. allocated(run%failure)) then
+      if (allocated(self%ending%points)) call move_alloc(self%ending%points, run%points)
+      run%range = self%ending%range
+      return
+    end if
+    self%ending = run_ending_type()
     run%exit_code = run%failure%code
     run%quantities = ieee_value(1.0_wp, ieee_quiet_nan)
   end subroutine make
+
+  !> Let a model begin in the state in which the last run ended, if there was one.
+  subroutine begin_at_ending(ending, model)
+    type(run_ending_type), intent(in) :: ending    !< of the last run
+    type(model_type), intent(inout) :: model       !< gets it as its start
+
+    if (.not. allocated(ending%position)) return
+    associate (initial => model%problem%initial, independent => model%problem%partition%independent())
+      initial%position = ending%position
+      initial%position_given = .true.
+      initial%velocity = merge(ending%velocity, initial%velocity, independent)
+      initial%velocity_given = initial%velocity_given .or. independent
+    end associate
+  end subroutine begin_at_ending
 end module mech9_run_maker

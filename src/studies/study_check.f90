@@ -1,12 +1,18 @@
 !> Whether the study of a model can be made.
 module mech9_study_check
   use mech9_error, only: error_type, raise, exit_usage, exit_data
+  use mech9_text, only: to_text
   use mech9_model, only: model_type
   use mech9_quantity_record, only: quantity_record_type
-  use mech9_design_run, only: find_quantities
+  use mech9_kinds, only: wp
+  use mech9_design_run, only: find_quantities, section_of_runs
+  use mech9_section_record, only: section_record_type
   implicit none
   private
   public :: check_study
+
+  !> Periods count as a whole number up to this part of them: a data file gives a period with ten digits and more.
+  real(wp), parameter :: whole_periods = 1.0e-9_wp
 
 contains
 
@@ -16,6 +22,7 @@ contains
     type(model_type), intent(in) :: model                   !< the model with the values of the data file
     type(quantity_record_type), intent(out) :: quantities   !< with their columns
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    class(section_record_type), allocatable :: section
 
     associate (output => model%request%output)
       if (model%request%study%kind == '') then
@@ -26,7 +33,32 @@ contains
                    output%sensitivities_place)
       else
         call find_quantities(model, quantities, err)
+        if (.not. allocated(err)) call section_of_runs(model, section, err)
+        if (.not. allocated(err) .and. model%request%study%carries()) call check_carrying(model, err)
       end if
     end associate
   end subroutine check_study
+
+  !> Refuse to carry states on where a run would not begin in the state in which the last one ended.
+  subroutine check_carrying(model, err)
+    type(model_type), intent(in) :: model                   !< the model
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it is refused
+    real(wp) :: periods
+    integer :: i
+
+    do i = 1, size(model%mechanism%motors)
+      if (model%mechanism%motors(i)%motor%has_state()) then
+        call raise(err, exit_data, 'a study does not carry on the states of motors: a current with inductance, or an integral; '// &
+                   'leave out carry=, or take a motor without a state', model%request%study%place)
+        return
+      end if
+    end do
+    associate (section => model%request%section, time => model%request%time)
+      if (.not. section%period > 0.0_wp) return
+      periods = (time%end - time%start)/section%period
+      if (abs(periods - anint(periods)) > whole_periods*max(1.0_wp, abs(periods))) call raise(err, exit_data, &
+        'a study that carries states on begins each run at the start of &time: its duration must be a whole number of periods '// &
+        'of &section, and it is '//to_text(periods, 9)//'; change end= in &time', model%request%study%place)
+    end associate
+  end subroutine check_carrying
 end module mech9_study_check

@@ -118,6 +118,9 @@ contains
     kept%values = run%values
     kept%quantities = run%quantities
     kept%exit_code = run%exit_code
+    if (allocated(kept%points)) deallocate (kept%points)
+    if (allocated(run%points)) kept%points = run%points
+    kept%range = run%range
     if (allocated(kept%failure)) deallocate (kept%failure)
     if (allocated(run%failure)) kept%failure = run%failure
   end subroutine keep

@@ -1,6 +1,6 @@
 !> The names of the groups for parameters, quantities, studies, objectives and the long-term motion, and for the names of links.
 module mech9_study_grammar
-  use mech9_program_kind, only: kinematics
+  use mech9_program_kind, only: kinematics, dynamics
   use mech9_grammar_rows, only: item_row_type, unlimited, needed, optional
   implicit none
   private
@@ -59,6 +59,9 @@ module mech9_study_grammar
     item_row_type('study', 'file', 'text', 1, 1, '', needed, '', '', '', 'list', &
                   'a text file with the values of all parameters in each line, in their order, beside the data file', &
                   '''designs.dat'''), &
+    item_row_type('study', 'carry', 'text', 1, 1, '', optional, '''none''', '', 'none forwards backwards both', 'grid list', &
+                  'each run begins where the one before ended: in the order of the values, in the opposite order, or in both', &
+                  '''both''', seldom=.true., program=dynamics), &
     item_row_type('objective', 'kind', 'text', 1, 1, '', needed, '', '', 'path function pose quantity', '', &
                   'a point follows a path, a coordinate a function, a link goes through poses, or a quantity has a value', &
                   '''path'''), &

@@ -13,12 +13,17 @@ contains
     class(section_record_type), intent(in) :: section          !< the section
     class(data_set_store_type), intent(inout) :: store         !< the open storage
     character(len=:), allocatable :: name
-    integer :: i
+    integer :: i, point
 
     if (section%count == 0) return
-    call store%put('section/point', nint(section%points(1, :section%count)), 'number of the point')
+    ! columns before that of the point are those of a study
+    do point = 1, size(section%names)
+      if (section%names(point) == 'point') exit
+    end do
+    call store%put('section/point', nint(section%points(point, :section%count)), 'number of the point')
     call store%make_scale('section/point')
-    do i = 2, size(section%names)
+    do i = 1, size(section%names)
+      if (i == point) cycle
       name = 'section/'//trim(section%names(i))
       call store%put(name, section%points(i, :section%count), 'column '//trim(section%names(i))//' at the points of the section', &
                      trim(section%units(i)))

@@ -17,7 +17,7 @@ module mech9_section_results
   use mech9_command_line, only: command_line_type
   implicit none
   private
-  public :: check_section_plots, write_section_results, print_section
+  public :: check_section_plots, write_section_files, write_section_results, print_section
 
 contains
 
@@ -51,13 +51,24 @@ contains
     character(len=*), intent(in) :: table_path                !< path of the table of the run; '-' or empty: no file
     type(hdf5_sink_type), pointer, intent(in) :: hdf5         !< the open HDF5 file; null: there is none
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
-    type(error_type), allocatable :: of_plots
 
     if (associated(hdf5)) call write_section(section, hdf5%file)
+    call write_section_files(options, model, section, table_path, err)
+  end subroutine write_section_results
+
+  !> Write the table and the plots of a section, after the run or the study.
+  subroutine write_section_files(options, model, section, table_path, err)
+    type(command_line_type), intent(in) :: options            !< the command line
+    type(model_type), intent(in) :: model                     !< the model
+    class(section_record_type), intent(in) :: section         !< the section
+    character(len=*), intent(in) :: table_path                !< path of the table of the results; '-' or empty: no file
+    type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
+    type(error_type), allocatable :: of_plots
+
     if (section%wanted%table /= '' .and. .not. options%has('no-write')) call write_table(model, section, err)
     call draw_plots(options, model, section, table_path, of_plots)
     if (.not. allocated(err)) call move_alloc(of_plots, err)
-  end subroutine write_section_results
+  end subroutine write_section_files
 
   !> Write the table.
   subroutine write_table(model, section, err)

@@ -5,6 +5,7 @@ module mech9_study_plots
   use mech9_command_line, only: command_line_type
   use mech9_model, only: model_type
   use mech9_plot, only: picture_of_plot
+  use mech9_plot_request, only: is_of_section
   use mech9_study_plot, only: study_plot_type
   use mech9_heading, only: new_heading
   use mech9_quantity_record, only: quantity_record_type
@@ -33,7 +34,7 @@ contains
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     type(string_type), allocatable :: requests(:), names(:), units(:)
     character(len=:), allocatable :: picture
-    integer :: i, n
+    integer :: i, k, n
 
     n = size(model%parameters)
     allocate (names(n + size(model%request%quantities)), units(n + size(model%request%quantities)))
@@ -46,10 +47,14 @@ contains
       units(n + i)%text = quantities%unit_of(i)
     end do
     call options%arguments('plot', requests)
-    allocate (self%plots(size(requests)))
+    ! the points of a section are drawn with them
+    allocate (self%plots(count([(.not. is_of_section(requests(i)%text), i=1, size(requests))])))
+    k = 0
     do i = 1, size(requests)
+      if (is_of_section(requests(i)%text)) cycle
+      k = k + 1
       call picture_of_plot(requests(i)%text, table, options%file, i, picture)
-      call self%plots(i)%open(requests(i)%text, new_heading(model%mechanism%title, names, units), n, picture, err)
+      call self%plots(k)%open(requests(i)%text, new_heading(model%mechanism%title, names, units), n, picture, err)
       if (allocated(err)) return
     end do
   end subroutine open_plots

@@ -22,6 +22,9 @@ module mech9_study_results
   use mech9_study_layout, only: study_layout_type, layout_of
   use mech9_design_run, only: columns_of_runs
   use mech9_hdf5_record, only: write_provenance
+  use mech9_section_record, only: section_record_type
+  use mech9_study_section, only: begin_section, add_points
+  use mech9_section_layout, only: write_section
   implicit none
   private
   public :: study_results_type
@@ -32,6 +35,7 @@ module mech9_study_results
     type(study_file_type), private :: file          !< of HDF5
     type(progress_type), private :: progress        !< shown on a terminal
     real(wp), allocatable, private :: row(:)        !< of the table
+    class(section_record_type), allocatable :: section   !< points of all runs; not allocated: there is none
   contains
     procedure :: open => open_results
     procedure :: is_made
@@ -60,6 +64,8 @@ contains
 
     call find_result_paths(options, model%request%output, self%paths)
     self%part = options%part()
+    call begin_section(model, self%section, err)
+    if (allocated(err)) return
     if (self%paths%hdf5 /= '') then
       call define_study(model%program, document, definition, err)
       if (allocated(err)) return
@@ -174,6 +180,7 @@ contains
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     integer :: n
 
+    if (allocated(self%section)) call add_points(self%section, run)
     if (self%paths%table == '') return
     n = 1 + size(run%values)
     self%row(1) = run%number
@@ -214,6 +221,7 @@ contains
     type(error_type), allocatable :: of_table
 
     call self%progress%finish()
+    if (allocated(self%section) .and. self%file%is_open()) call write_section(self%section, self%file%file)
     call self%file%close(err)
     call self%table%close(of_table)
     if (.not. allocated(err)) call move_alloc(of_table, err)

@@ -23,6 +23,7 @@ module mech9_study_task
   use mech9_study_processes, only: study_processes_type
   use mech9_study_threads, only: threads_of_machine, has_threads
   use mech9_study_propagation, only: propagation_type, propagate
+  use mech9_section_results, only: check_section_plots, write_section_files, print_section
   use mech9_study_words, only: print_study, save_study_report
   implicit none
   private
@@ -54,6 +55,7 @@ contains
     reported = .false.
     used = model
     call judge(options, used, quantities, err)
+    if (.not. allocated(err) .and. processes%count > 1) call refuse_processes(model, err)
     call processes%agree(err)
     if (.not. (processes%is_first .or. allocated(err))) then
       call processes%agree(err)
@@ -89,6 +91,7 @@ contains
     if (allocated(err)) return
     if (.not. options%has('quiet')) call print_notes(options, model)
     call results%open(options, document, model, quantities, err)
+    if (.not. allocated(err)) call check_section_plots(options, model, results%section, err)
   end subroutine open_files
 
   !> Report a study that cannot be carried out, and find the columns of its quantities. Runs keep their columns only where a file
@@ -106,7 +109,33 @@ contains
       call raise(err, exit_usage, '--threads takes at most '//to_text(most_threads))
     if (.not. allocated(err)) call check_study(model, quantities, err)
     if (.not. allocated(err) .and. model%request%output%hdf5_runs) call refuse_varied_times(model, err)
+    if (.not. allocated(err)) call refuse_parts(options, model, err)
   end subroutine judge
+
+  !> Refuse several processes for a study whose runs follow each other, or whose points they would not give back.
+  subroutine refuse_processes(model, err)
+    type(model_type), intent(in) :: model                   !< the model with the values of the data file
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it is refused
+
+    if (.not. (model%request%study%carries() .or. model%request%section%is_wanted)) return
+    call raise(err, exit_usage, 'several processes make no study with a section, or with states that are carried on; make it '// &
+               'in one, which has threads')
+  end subroutine refuse_processes
+
+  !> Refuse a part of a study whose runs follow each other, and to continue one whose points no file keeps.
+  subroutine refuse_parts(options, model, err)
+    type(command_line_type), intent(in) :: options          !< the command line
+    type(model_type), intent(in) :: model                   !< the model with the values of the data file
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it is refused
+
+    if (model%request%study%carries() .and. (options%has('part') .or. options%has('continue'))) then
+      call raise(err, exit_usage, 'a study that carries states on makes all its runs, one after the other: leave out --'// &
+                 trim(merge('part    ', 'continue', options%has('part'))))
+    else if (model%request%section%is_wanted .and. options%has('continue')) then
+      call raise(err, exit_usage, '--continue has no points of the section for the runs that were made before; make the study '// &
+                 'anew, or leave out &section')
+    end if
+  end subroutine refuse_parts
 
   !> How many threads make the runs.
   integer function threads_of_study(options, model) result(threads)
@@ -117,6 +146,7 @@ contains
     ! a user's procedures may keep numbers from call to call
     if (calls_user_procedures(model)) threads = 1
     threads = options%number('threads', threads)
+    if (model%request%study%carries()) threads = 1
     if (.not. has_threads()) threads = 1
     threads = max(1, min(threads, most_threads, model%request%study%runs))
   end function threads_of_study
@@ -154,7 +184,7 @@ contains
     type(study_runs_type) :: runs
     type(propagation_type), allocatable :: propagation(:)
     type(signal_interruption_type), target :: interruption
-    type(error_type), allocatable :: err, without_shares
+    type(error_type), allocatable :: err, without_shares, of_section
     real(wp) :: clock
     integer :: threads
     logical :: quiet, kept
@@ -179,6 +209,11 @@ contains
     if (.not. quiet .and. allocated(without_shares)) &
       write (error_unit, '(a)') 'note: no shares by derivatives: '//without_shares%message
     if (.not. quiet .and. kept) call results%print_paths(error_unit)
+    if (allocated(results%section)) then
+      call write_section_files(options, model, results%section, results%paths%table, of_section)
+      if (allocated(of_section)) call diagnostics%add_error(of_section)
+      if (.not. quiet) call print_section(error_unit, results%section, .not. options%has('no-write'))
+    end if
     if (allocated(err)) then
       call diagnostics%add_error(err)
     else if (allocated(runs%first_failure) .and. runs%sums%done == 0) then
