@@ -12,7 +12,8 @@ module mech9_reader
   use mech9_document, only: document_type, group_type
   use mech9_checker, only: check_document
   use mech9_item_units, only: units_of_document
-  use mech9_lookup, only: groups_named, group_or_empty, has_group, has_name, get_integer, get_real, get_reals, get_text, span_of
+  use mech9_lookup, only: groups_named, group_or_empty, has_group, has_name, get_integer, get_integers, get_real, get_reals, &
+    get_text, span_of
   use mech9_parameter_reader, only: read_parameters
   use mech9_formula_parameters, only: formula_parameters_type
   use mech9_structure_reader, only: read_structure
@@ -100,6 +101,8 @@ contains
     call read_request(document, model%request, diagnostics)
     call read_structure(document, model%mechanism%structure, model%problem%partition, known, diagnostics)
     if (.not. known) call forget(model%mechanism%structure, model%problem%partition)
+    if (has_name(group_or_empty(document, 'structure'), 'cq')) &
+      model%problem%given = get_integers(group_or_empty(document, 'structure'), 'cq')
     model%mechanism%names = document%names
     if (known) call check_link_numbers(document, model%mechanism%structure%shown_links(), diagnostics)
     call read_parts(document, model%mechanism, model%problem, model%request, diagnostics)

@@ -9,7 +9,7 @@ module mech9_result_units
   implicit none
   private
   public :: si_unit, si_force, unit_of, unit_name, rate_unit_of, rate_unit_name, force_unit_name, unit_of_parameter, length_text
-  public :: longest_unit, impulse_unit_of
+  public :: longest_unit, impulse_unit_of, inertia_unit_of, inertia_unit_name
 
 contains
 
@@ -82,6 +82,35 @@ contains
 
     force_unit_name = mechanism%units%name_of(trim(si_force(mechanism%pairs(k)%pair)))
   end function force_unit_name
+
+  !> One unit of a coefficient of motion in the results, in kg m^2, kg m or kg: mass times length squared between two turning coordinates,
+  !> whatever the unit of angles.
+  pure real(wp) function inertia_unit_of(mechanism, p, r) result(unit)
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    integer, intent(in) :: p                        !< number of a coordinate
+    integer, intent(in) :: r                        !< number of a coordinate
+
+    unit = mechanism%units%size_of(trim(si_inertia(mechanism, p, r)))
+  end function inertia_unit_of
+
+  !> Name of the unit of a coefficient of motion in the results.
+  pure character(len=longest_unit) function inertia_unit_name(mechanism, p, r) result(name)
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    integer, intent(in) :: p                        !< number of a coordinate
+    integer, intent(in) :: r                        !< number of a coordinate
+
+    name = mechanism%units%name_of(trim(si_inertia(mechanism, p, r)))
+  end function inertia_unit_name
+
+  !> The SI unit of a coefficient of motion. A user's own pair, whose unit is not known, counts as one that turns.
+  pure character(len=6) function si_inertia(mechanism, p, r) result(unit)
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    integer, intent(in) :: p                        !< number of a coordinate
+    integer, intent(in) :: r                        !< number of a coordinate
+    character(len=6), parameter :: names(0:2) = ['kg    ', 'kg m  ', 'kg m^2']
+
+    unit = names(count([si_force(mechanism%pairs(p)%pair), si_force(mechanism%pairs(r)%pair)] /= 'N'))
+  end function si_inertia
 
   !> One unit of the impulse of a stop, a friction or a contact in the results, in N m s or N s.
   pure real(wp) function impulse_unit_of(mechanism, group, number) result(unit)

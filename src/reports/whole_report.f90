@@ -5,17 +5,19 @@ module mech9_whole_report
   use mech9_json, only: json_type
   use mech9_facts, only: facts_type
   use mech9_diagnostics, only: diagnostics_type
+  use mech9_mechanism, only: mechanism_type
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_driven_simulation, only: driven_simulation_type
   use mech9_impact_watcher, only: impact_watcher_type
   use mech9_units, only: units_type
-  use mech9_result_units, only: impulse_unit_of
+  use mech9_result_units, only: impulse_unit_of, inertia_unit_of
   use mech9_free_simulation, only: free_simulation_type
   use mech9_model_motion, only: model_motion_type
   use mech9_quantity_record, only: quantity_record_type
   use mech9_force_record, only: reacting_pairs
   use mech9_run, only: run_type
+  use mech9_instant_report, only: add_instant
   use mech9_report_parts, only: begin_report, add_structure, add_uniqueness
   implicit none
   private
@@ -39,6 +41,7 @@ contains
     driven => run%motion%driven()
     free => run%motion%free()
     if (associated(free)) call add_free(json, run%motion, free)
+    if (.not. diagnostics%failed()) call add_instant(json, model, run)
     call report_quantities(run%source%quantities, json)
     if (allocated(run%source%section)) then
       call json%begin_object('section')
@@ -64,14 +67,15 @@ contains
     type(model_motion_type), intent(in) :: motion          !< the motion, as far as it went
     type(free_simulation_type), intent(in) :: simulation   !< its simulation
 
-    call add_coefficients(json, motion%plan, simulation%coefficients)
+    call add_coefficients(json, simulation%model%mechanism, motion%plan, simulation%coefficients)
     call add_coordinate_changes(json, simulation)
     call add_events(json, simulation)
   end subroutine add_free
 
   !> Add the coefficients of motion: [{"p": 1, "r": 5, "value": ...}, ...]
-  subroutine add_coefficients(json, plan, coefficients)
+  subroutine add_coefficients(json, mechanism, plan, coefficients)
     type(json_type), intent(inout) :: json       !< the report, inside its object
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan          !< the plan of the mechanism
     real(wp), intent(in) :: coefficients(:, :)   !< (I,I) a(p,r), in the order of the independent coordinates
     integer :: p, r
@@ -82,7 +86,7 @@ contains
         call json%begin_object()
         call json%add('p', plan%independent(p))
         call json%add('r', plan%independent(r))
-        call json%add('value', coefficients(r, p))
+        call json%add('value', coefficients(r, p)/inertia_unit_of(mechanism, plan%independent(p), plan%independent(r)))
         call json%end_object()
       end do
     end do

@@ -1,6 +1,6 @@
 !> The report of a free motion.
 module mech9_dynamic_report
-  use mech9_result_units, only: length_text
+  use mech9_result_units, only: length_text, inertia_unit_of
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
   use mech9_counted, only: counted
@@ -8,6 +8,7 @@ module mech9_dynamic_report
   use mech9_row_layout, only: write_coefficients, take_changes, write_events
   use mech9_hdf5_sink, only: hdf5_sink_type
   use mech9_named_words, only: with_names
+  use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_law_notes, only: print_jumps
   use mech9_effect_notes, only: print_effects
@@ -121,8 +122,9 @@ contains
   end function change_words
 
   !> Print the coefficients of motion a(p,r) at the start, p and r the numbers of the independent coordinates.
-  subroutine print_coefficients(unit, plan, coefficients)
+  subroutine print_coefficients(unit, mechanism, plan, coefficients)
     integer, intent(in) :: unit                  !< the output unit
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
     type(plan_type), intent(in) :: plan          !< the plan of the mechanism
     real(wp), intent(in) :: coefficients(:, :)   !< lower triangle
     integer :: p, r
@@ -131,7 +133,7 @@ contains
     do p = 1, size(plan%independent)
       do r = p, size(plan%independent)
         write (unit, '(2x,a,es24.16)') 'a('//to_text(plan%independent(p))//','//to_text(plan%independent(r))//') =', &
-          coefficients(r, p)
+          coefficients(r, p)/inertia_unit_of(mechanism, plan%independent(p), plan%independent(r))
       end do
     end do
   end subroutine print_coefficients

@@ -84,7 +84,7 @@ contains
       associate (motion => run%motion)
         call print_check(options, pictures, model, motion%plan, simulation%requested, motion%start, motion%way, diagnostics)
         if (options%has('check') .or. options%has('plan')) &
-          call print_coefficients(output_unit, motion%plan, simulation%coefficients)
+          call print_coefficients(output_unit, model%mechanism, motion%plan, simulation%coefficients)
       end associate
       if (options%has('check')) call check_motion(used, variable, run, err)
       if (allocated(err)) call diagnostics%add_error(err)

@@ -432,6 +432,10 @@ def test_reports(checks, build, mech9, four_bar):
         checks.equal(run.report[name], theirs[name], f'{name} in the report of a free motion')
 
     checks.true(len(run.coordinate_changes) > 0 and run.coordinate_changes == theirs['coordinate_changes'], 'changes of coordinates are those of the report')
+    told = report_of(build.program('mech9d'), free, '--set', 'time.at=0.0')
+    instant = mech9.read(free).dynamics(at=0.0).report
+    for name in ('mass_matrix', 'bias', 'point_jacobians', 'dependent_jacobian', 'generalized_forces'):
+        checks.equal(instant[name], told[name], f'{name} of one instant')
     stuck = m.with_(**{'pair(2).point(1)': 0.65})
     with pytest.raises(mech9.Error) as caught:
         stuck.kinematics()

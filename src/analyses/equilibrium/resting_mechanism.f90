@@ -2,11 +2,9 @@
 !> its position, their stiffness, and motions to other positions on the same branch.
 module mech9_resting_mechanism
   use mech9_kinds, only: wp
-  use mech9_tolerances, only: singular_conditioning
   use mech9_integration_tolerances, only: worthwhile_improvement
   use mech9_simulation_tolerances, only: doubtful_conditioning
-  use mech9_error, only: error_type, raise, exit_singular, exit_integrator
-  use mech9_simulation_failures, only: failure_singular_start_block
+  use mech9_error, only: error_type, exit_integrator
   use mech9_mechanism, only: mechanism_type
   use mech9_partition, only: partition_type, free_coordinate, driven_coordinate
   use mech9_law, only: drive_slot_type
@@ -14,6 +12,7 @@ module mech9_resting_mechanism
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type, copy_state
   use mech9_resting_plan, only: plan_by_geometry
+  use mech9_motion_in_space, only: refuse_singular_chains
   use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance
   use mech9_linearisation, only: linearisation_type, new_linearisation, find_forces, find_matrix, by_position
   use mech9_clusters, only: clusters_type, find_clusters
@@ -176,16 +175,8 @@ contains
   subroutine refuse_singular(resting, err)
     type(resting_type), intent(inout) :: resting        !< the mechanism at rest, in the best coordinates
     type(error_type), allocatable, intent(out) :: err   !< allocated if there is one
-    integer :: b
 
-    do b = 1, size(resting%plan%blocks)
-      if (resting%plan%blocks(b)%equations == 0) cycle
-      if (resting%linearisation%motion%blocks(b)%equations%conditioning() >= singular_conditioning) cycle
-      call raise(err, exit_singular, failure_singular_start_block)
-      err%failure%chains = resting%plan%blocks(b)%chains
-      err%failure%coordinates = resting%plan%blocks(b)%coordinates
-      return
-    end do
+    call refuse_singular_chains(resting%plan, resting%state, resting%linearisation, err)
   end subroutine refuse_singular
 
   !> Take other free coordinates near a singular position of the present ones. Driven coordinates stay driven, and the free ones

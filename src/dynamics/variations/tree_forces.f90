@@ -18,7 +18,7 @@ module mech9_tree_forces
   use mech9_variation, only: variation_type
   implicit none
   private
-  public :: tree_forces_type, new_tree_forces, find_tree_forces, vary_tree_forces, loop_wrench_type
+  public :: tree_forces_type, new_tree_forces, find_tree_forces, vary_tree_forces, loop_wrench_type, add_body, add_loads
 
   !> The force of a closed chain on its closing frame, and its moment about the origin of the frame in which the loop starts, in
   !> the axes of that frame. The target gets the opposite.
@@ -87,13 +87,13 @@ contains
     call sweep_inward(plan, state, forces)
   end subroutine find_tree_forces
 
-  !> Add the inertial force of a body, less its weight, at its frame.
+  !> Add the inertial force of a body, less its weight, at its frame, and its magnitude.
   subroutine add_body(body, gravity, state, length, forces)
     type(frame_body_type), intent(in) :: body         !< the body
     real(wp), intent(in) :: gravity(3)                !< [m/s^2]
     type(state_type), intent(in) :: state             !< position and motion of the mechanism
     real(wp), intent(in) :: length                    !< size of the mechanism [m]
-    type(tree_forces_type), intent(inout) :: forces   !< gets the force
+    type(tree_forces_type), intent(inout) :: forces   !< gets the force at the body's frame
     real(wp) :: arm(3), force(3), couple(3), spin(3), slip(3)
 
     associate (f => body%frame, r => state%r(:, :, body%frame), omega => state%omega(:, body%frame))
@@ -123,7 +123,7 @@ contains
     product = turn(r, product)
   end function turned_inertia
 
-  !> Subtract the loads.
+  !> Subtract the loads whose sums are known at the frames of their links.
   subroutine add_loads(plan, dynamics, state, forces)
     type(plan_type), intent(in) :: plan                !< the plan of the mechanism, in space
     type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics

@@ -5,7 +5,7 @@ module mech9_row_layout
   use mech9_text, only: string_type
   use mech9_units, only: units_type
   use mech9_mechanism, only: mechanism_type
-  use mech9_result_units, only: impulse_unit_of
+  use mech9_result_units, only: impulse_unit_of, inertia_unit_of
   use mech9_columns, only: columns_type
   use mech9_plan, only: plan_type
   use mech9_free_simulation, only: free_simulation_type
@@ -176,11 +176,14 @@ contains
     type(plan_type), intent(in) :: plan                       !< the plan of the mechanism
     type(free_simulation_type), intent(in) :: simulation      !< the motion
     real(wp) :: coefficients(size(plan%independent), size(plan%independent))
-    integer :: p
+    integer :: p, r
 
     do p = 1, size(plan%independent)
-      coefficients(p:, p) = simulation%coefficients(p:, p)
-      coefficients(p, p:) = simulation%coefficients(p:, p)
+      do r = p, size(plan%independent)
+        coefficients(r, p) = simulation%coefficients(r, p) &
+                             /inertia_unit_of(simulation%model%mechanism, plan%independent(p), plan%independent(r))
+        coefficients(p, r) = coefficients(r, p)
+      end do
     end do
     call store%put('dynamics/p', plan%independent, 'number of an independent coordinate at the start')
     call store%make_scale('dynamics/p')
