@@ -55,11 +55,14 @@ contains
     integer :: k
 
     if (model%mechanism%title /= '') write (unit, '(a)') model%mechanism%title
-    do k = 1, size(found%exponents)
+    do k = 1, size(found%exponents) - found%lost
       write (unit, '(a)') 'exponent '//to_text(k)//': '//to_text(found%exponents(k), 6)//' 1/s, standard error '// &
         to_text(found%errors(k), 2)
     end do
-    if (size(found%exponents) == found%states) &
+    do k = size(found%exponents) - found%lost + 1, size(found%exponents)
+      write (unit, '(a)') 'exponent '//to_text(k)//': minus infinity, since events make neighbouring motions the same'
+    end do
+    if (size(found%exponents) == found%states .and. found%lost == 0) &
       write (unit, '(a)') 'their sum: '//to_text(sum(found%exponents), 6)//' 1/s'
     write (unit, '(a)') 'means from t = '//to_text(found%from, 6)//' s to '//to_text(found%to, 6)//' s; '// &
       counted(found%orthonormalised, 'orthonormal set')//' of directions'

@@ -15,12 +15,10 @@ module mech9_integrated_motion
   use mech9_integrator, only: integrator_type, integration_statistics_type, add_statistics
   use mech9_coordinate_choice, only: best_independent, carry_over, worth_taking
   use mech9_integrated_vector, only: pack_state
-  use mech9_third_derivatives, only: find_third_derivatives
-  use mech9_motion_system, only: motion_system_type, set_motion_system
+  use mech9_motion_system, only: motion_system_type
   use mech9_joint_passing, only: pass_law_joint => pass_joint
-  use mech9_held_angles, only: copy_drives
   use mech9_ball_angles, only: ball_angles_type
-  use mech9_other_angles, only: take_angles
+  use mech9_other_angles, only: take_angles, show_in_angles, set_in_partition
   use mech9_dense_output, only: dense_output_type
   use mech9_limit_watch, only: limit_watch_type
   use mech9_stop_contacts, only: stop_contacts_type
@@ -29,6 +27,7 @@ module mech9_integrated_motion
   use mech9_friction_events, only: choose_modes
   use mech9_held_coordinates, only: choose_held, hold_by_drives
   use mech9_motion_event, only: motion_events_type
+  use mech9_event_variation, only: event_variation_type, impact_type
   use mech9_impact_watcher, only: impact_watcher_type
   use mech9_side_steps, only: side_steps_type, begin_integration
   implicit none
@@ -50,6 +49,7 @@ module mech9_integrated_motion
     real(wp) :: conditioning_here = 0.0_wp        !< worst pivot ratio there
     real(wp), allocatable :: heat(:)              !< energy that each friction has taken up to there [J]
     real(wp), allocatable :: heat_before(:)       !< up to the start of the last step [J]
+    type(event_variation_type), allocatable, private :: passage   !< derivatives at the present event; not allocated: none are integrated
     integer :: systems = 0                        !< how many systems in other coordinates there were before the present one
     real(wp) :: look_below = doubtful_conditioning             !< conditioning at which other coordinates are looked for
     type(integration_statistics_type), private :: before   !< of the integrators before the present one
@@ -62,6 +62,7 @@ module mech9_integrated_motion
     procedure :: change_coordinates
     procedure :: change_angles
     procedure :: show_angles
+    procedure, private :: begin_passage
     procedure, private :: hold_coordinates
     procedure, private :: insert
     procedure :: look_between
@@ -159,7 +160,8 @@ contains
     call refuse_angles(angles, self%t, err)
     if (.not. allocated(err)) call self%system%show_sensitivity(err)
     if (.not. allocated(err)) call other%begin_sensitivity(self%variable, err, self%system%sensitivity%motion%q, &
-                                                               self%system%sensitivity%motors(:, :, 0))
+                                                           self%system%sensitivity%motors(:, :, 0), &
+                                                           self%system%sensitivity%motion%held)
   end subroutine hand_on_sensitivity
 
   !> Fail because derivatives by parameters are not known in other angles than those of the data file.
@@ -186,7 +188,6 @@ contains
     type(error_type), allocatable :: failure
     type(wanted_type) :: wanted
     type(replanning_type) :: carried
-    logical :: same_frames
 
     made = .false.
     wanted = worth
@@ -203,24 +204,8 @@ contains
     call move_alloc(carried%plan, other%plan)
     call move_alloc(carried%state, other%state)
     angles = self%angles
-    if (angles%in_use()) then
-      angles%held%partition = partition
-      call angles%follow(self%system%model, other%plan, other%state, failure)
-    else
-      call angles%restart(self%system%model, partition, other%plan, other%state, failure)
-    end if
+    call set_in_partition(self%system, partition, carried%serves, angles, other, made, failure)
     if (gives_up(failure, err)) return
-    same_frames = carried%serves .and. .not. angles%in_use() .and. all(angles%held%partition%kind == partition%kind) &
-                  .and. all(partition%driven() .eqv. self%system%plan%driven)
-    call copy_drives(angles%held%drives, other%drives)
-    call self%system%hand_on_modes(other)
-    ! they may have no inertia in this position; what fails in any coordinates will do so in the present ones, too
-    if (same_frames) then
-      call set_motion_system(self%system%model, angles%held%partition, other, failure, self%system)
-    else
-      call set_motion_system(self%system%model, angles%held%partition, other, failure)
-    end if
-    made = .not. allocated(failure)
   end subroutine take_partition
 
   !> Go on with other angles in the ball joints whose present ones are near gimbal lock, or with other angles of rods held.
@@ -243,10 +228,7 @@ contains
     call other%make_room()
     call take_angles(self%system, self%angles, angles, other, failure)
     changed = .not. (gives_up(failure, err) .or. angles%move_as(self%angles))
-    if (changed .and. allocated(self%system%sensitivity)) then
-      call raise(err, exit_singular, failure_angles_sensitivity)
-      err%failure%t = self%t
-    end if
+    if (changed .and. allocated(self%system%sensitivity)) call refuse_angles(angles, self%t, err)
     if (changed) then
       self%angles = angles
       call replace_system(self, other)
@@ -260,19 +242,8 @@ contains
   subroutine show_angles(self, err)
     class(integrated_motion_type), intent(inout) :: self   !< the motion, with angles continued to the present state
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
-    real(wp) :: dddq(self%system%plan%n_coordinates)
 
-    if (.not. self%angles%in_use()) return
-    call self%angles%continue_to(self%system%state)
-    dddq = 0.0_wp
-    if (self%angles%in_lock()) call find_third_derivatives(self%system, dddq, err)
-    if (.not. allocated(err)) call self%angles%show(self%system%state, dddq, err)
-    if (allocated(self%system%state%stop_force)) self%angles%state%stop_force = self%system%state%stop_force
-    if (allocated(self%system%contact)) self%angles%state%contact_force = self%system%state%contact_force
-    if (allocated(self%system%state%friction)) then
-      self%angles%state%friction = self%system%state%friction
-      self%angles%state%heat = self%system%state%heat
-    end if
+    call show_in_angles(self%system, self%angles, err)
   end subroutine show_angles
 
   !> Whether there is a failure. One that has nothing to do with the choice of coordinates is handed on.
@@ -405,16 +376,24 @@ contains
     class(impact_watcher_type), allocatable, intent(inout) :: impacts   !< gets the impulses of pairs; not allocated: they are not recorded
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     real(wp), dimension(self%system%plan%n_coordinates) :: impulses, changes
+    type(stop_contacts_type) :: contacts_before
+    type(impact_type) :: impact
     integer :: before
-    logical :: holds_change, stalls, hits
+    logical :: holds_change, stalls, hits, released
 
     before = events%count
     self%system%interval%contact = 0
     self%system%interval%friction = 0
     self%system%interval%rubbing = 0
     call self%system%move_to(self%t, self%y, err)
+    if (.not. allocated(err)) call self%begin_passage(met, of_held, released, err)
     if (allocated(err)) return
-    call meet_contacts(self%system, met, rubbing, of_held, self%contacts, impulses, changes, holds_change, events, err)
+    contacts_before = self%contacts
+    call meet_contacts(self%system, met, rubbing, of_held, self%contacts, impulses, changes, impact, holds_change, events, err)
+    if (allocated(err)) return
+    holds_change = holds_change .or. released
+    if (allocated(self%passage) .and. allocated(impact%ends)) &
+      call self%passage%pass_impact(self%system, contacts_before%ends, impact, at_start, err)
     if (allocated(err)) return
     hits = any(abs(impulses) > 0.0_wp)
     if (allocated(self%system%contact)) hits = hits .or. any(abs(self%system%state%contact_force) > 0.0_wp)
@@ -434,9 +413,34 @@ contains
       call self%hold_coordinates(err)
     else
       call pack_state(self%system%plan, self%system%state, self%y)
-      call self%restart((self%t), (self%y), err)
+      if (allocated(self%passage)) call self%passage%put_behind(self%system, self%t, self%y, err)
+      if (.not. allocated(err)) call self%restart((self%t), (self%y), err)
     end if
+    if (allocated(self%passage) .and. at_start .and. .not. allocated(err)) &
+      call self%passage%check_start(self%system, self%contacts%ends, err)
+    if (allocated(self%passage)) deallocate (self%passage)
   end subroutine meet_events
+
+  !> Begin with the derivatives at an event, if any are integrated. Before an impact the coordinates that stops and frictions hold are
+  !> released, since they take part in it.
+  subroutine begin_passage(self, met, of_held, released, err)
+    class(integrated_motion_type), intent(inout) :: self   !< the motion, whose system stands before the event
+    integer, intent(in) :: met                             !< number of the end that is met, left or released; 0: none
+    real(wp), intent(in) :: of_held(:)                     !< (M) rates that held coordinates would have if nothing held them [rad/s, m/s]
+    logical, intent(out) :: released                       !< coordinates were released
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+
+    released = .false.
+    if (.not. allocated(self%system%sensitivity)) return
+    if (allocated(self%passage)) deallocate (self%passage)
+    allocate (self%passage)
+    call self%passage%begin(self%system, of_held, err)
+    if (met == 0 .or. .not. allocated(self%system%held) .or. allocated(err)) return
+    released = self%contacts%ends(met)%is_rigid .and. .not. self%contacts%ends(met)%held
+    if (.not. released) return
+    call self%hold_coordinates(err, nothing=.true.)
+    if (allocated(self%system%friction)) self%system%friction%held = [integer ::]
+  end subroutine begin_passage
 
   !> Choose which pairs stick and which slip from now on. Where stops hold other coordinates, these are changed first. Frictions may
   !> press a contact that touches, which then closes, until both agree.
@@ -449,6 +453,7 @@ contains
     type(motion_events_type), intent(inout) :: events      !< gets pairs that stick and slip
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     real(wp), dimension(self%system%plan%n_coordinates) :: impulses, changes
+    type(impact_type) :: impact
     integer, allocatable :: sticking(:)
     integer :: round
     logical :: pressed
@@ -461,8 +466,8 @@ contains
       if (.not. allocated(err)) call find_pressed(self%system, self%contacts, met, pressed, err)
       if (allocated(err)) return
       if (.not. pressed .or. round == size(self%contacts%ends)) exit
-      call meet_contacts(self%system, 0, 0, 0.0_wp*self%system%state%dq, self%contacts, impulses, changes, holds_change, events, &
-                         err)
+      call meet_contacts(self%system, 0, 0, 0.0_wp*self%system%state%dq, self%contacts, impulses, changes, impact, holds_change, &
+                         events, err)
       if (allocated(err)) return
     end do
     if (pressed) call raise(err, exit_integrator, failure_many_events)
@@ -471,19 +476,26 @@ contains
   end subroutine meet_frictions
 
   !> Go on with the coordinates held whose stops are closed, or whose pairs stick, and with all others released, at the present state.
-  subroutine hold_coordinates(self, err)
+  subroutine hold_coordinates(self, err, nothing)
     class(integrated_motion_type), intent(inout) :: self   !< the motion, whose system has the rates of all coordinates
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    logical, intent(in), optional :: nothing               !< nothing holds a coordinate for a moment
     type(motion_system_type), pointer :: other
     type(ball_angles_type) :: angles
     type(partition_type) :: partition
+    type(stop_contacts_type) :: contacts
     integer, allocatable :: sticking(:)
     logical :: made
 
     sticking = [integer ::]
-    if (allocated(self%system%friction)) sticking = self%system%friction%held
-    call choose_held(self%system, self%contacts, sticking, partition)
-    call hold_by_drives(self%contacts, sticking, self%system%state%q, self%angles%held%drives, self%system%held)
+    contacts = self%contacts
+    if (present(nothing)) then
+      contacts%ends%held = .false.
+    else if (allocated(self%system%friction)) then
+      sticking = self%system%friction%held
+    end if
+    call choose_held(self%system, contacts, sticking, partition)
+    call hold_by_drives(contacts, sticking, self%system%state%q, self%angles%held%drives, self%system%held)
     allocate (other)
     call other%make_room()
     call take_partition(self, partition, wanted_type(), other, angles, made, err)
@@ -494,6 +506,8 @@ contains
       call self%system%project(self%t, self%y, err)
       if (.not. allocated(err)) call self%system%pass_limits(err)
       if (.not. allocated(err)) call self%system%present(err)
+      if (allocated(self%passage) .and. .not. allocated(err)) &
+        call self%passage%hand_on(self%variable, self%system, err)
       if (.not. allocated(err)) call self%begin(err)
     else
       deallocate (other)

@@ -42,9 +42,8 @@ contains
       text = 'derivatives by the parameters are not computed with friction, as of friction '//to_text(failure%number)// &
              '. Leave out the friction, the parameters, or sensitivities and gradients'
     case (failure_event_sensitivity)
-      text = 'derivatives by the parameters are not computed beyond t = '//to_text(failure%t, 10)//' s, where stop '// &
-             to_text(failure%number)//' is hit, closes or opens. End the run before, make the stop '// &
-             'compliant by stiffness=, or leave out sensitivities and gradients'
+      text = 'derivatives by the parameters do not exist at t = '//to_text(failure%t, 10)//' s: '//cause_at_event(failure)// &
+             '. End the run before, or leave out sensitivities and gradients'
     case (failure_angles_sensitivity)
       text = 'derivatives by the parameters are not computed at t = '//to_text(failure%t, 10)//' s, where the motion goes on '// &
              'in other angles of a ball joint or of a rod than those of the data file. End the run before, or leave out '// &
@@ -58,4 +57,26 @@ contains
              'controller its rate), leave out the parameter, or sensitivities and gradients'
     end select
   end subroutine explain_sensitivity
+
+  !> Why an event has no derivatives.
+  pure function cause_at_event(failure) result(text)
+    type(failure_type), intent(in) :: failure             !< the failure
+    character(len=:), allocatable :: text
+
+    select case (failure%limit)
+    case (1)
+      text = 'stop '//to_text(failure%number)//' is met without a rate'
+    case (2)
+      text = 'stop '//to_text(failure%number)//' is hit together with another one'
+    case (3)
+      text = 'the motion begins on stop '//to_text(failure%number)//', and parameters move it away or behind'
+    case (5)
+      text = 'the rate of a drive jumps while a stop or friction holds a coordinate'
+    case (6)
+      text = 'stop '//to_text(failure%number)//' is hit, where columns may jump that quantities follow between outputs (give '// &
+             'quantities that take ''start'', ''end'' or ''at'')'
+    case default
+      text = 'the pair of friction '//to_text(failure%number)//' comes to rest without an acceleration'
+    end select
+  end function cause_at_event
 end module mech9_sensitivity_words

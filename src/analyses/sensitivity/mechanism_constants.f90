@@ -12,7 +12,8 @@ module mech9_mechanism_constants
   use mech9_spanning_tree, only: lay_out_frames, renew_frames
   implicit none
   private
-  public :: gather_constants, renew_constants, align_axes, constants_of_coordinate, constants_of_pose, constants_of_body
+  public :: gather_constants, renew_constants, align_axes, constants_of_coordinate, constants_of_pose, constants_of_body, &
+    constants_of_stop, constants_of_friction
 
   !> Numbers of a coordinate: the pose of its axis, offset, advance per unit, and the pose of its closing frame in the target.
   integer, parameter :: constants_of_coordinate = 26
@@ -20,12 +21,16 @@ module mech9_mechanism_constants
   integer, parameter :: constants_of_pose = 12
   !> Numbers of a body: mass, centre, inertia.
   integer, parameter :: constants_of_body = 13
+  !> Numbers of a stop beside those of its load: both ends, and restitution.
+  integer, parameter :: constants_of_stop = 3
+  !> Numbers of a friction: coefficients at rest and of sliding, radius, face radius, arm, preload, transition.
+  integer, parameter :: constants_of_friction = 7
 
 contains
 
   !> The numbers of a model, each link's poses in its frames included: 26 for each coordinate, 12 for each link, 3 for each point;
-  !> then the numbers of the drives, couplings, pairs and loads that are known; 13 for each body, gravity, and the start of
-  !> each coordinate.
+  !> then the numbers of the drives, couplings, pairs and loads that are known, and of stops and frictions; 13 for each body, gravity,
+  !> and the start of each coordinate.
   subroutine gather_constants(model, length, origin, values)
     type(model_type), intent(in) :: model            !< the model
     real(wp), intent(in) :: length                   !< the mechanism's size, which is not varied [m]
@@ -78,6 +83,7 @@ contains
       at = at + 3
     end do
     call append_laws(model, values)
+    call append_bounds(model, values)
     call append_masses(model, values)
   end subroutine take_constants
 
@@ -111,6 +117,26 @@ contains
       if (allocated(more)) values = [values, more]
     end do
   end subroutine append_laws
+
+  !> Append the numbers of stops and frictions. An end that a stop does not have counts as zero.
+  subroutine append_bounds(model, values)
+    type(model_type), intent(in) :: model                !< the model
+    real(wp), allocatable, intent(inout) :: values(:)    !< the row so far
+    integer :: i, end
+
+    do i = 1, size(model%mechanism%stops)
+      associate (stop => model%mechanism%stops(i))
+        values = [values, (merge(stop%ends(end), 0.0_wp, stop%has_end(end)), end=1, 2), stop%restitution]
+      end associate
+    end do
+    if (.not. model%mechanism%has_frictions()) return
+    do i = 1, size(model%mechanism%frictions)
+      associate (friction => model%mechanism%frictions(i))
+        values = [values, friction%static, friction%dynamic, friction%radius, friction%face_radius, friction%arm, &
+                  friction%preload, friction%transition]
+      end associate
+    end do
+  end subroutine append_bounds
 
   !> Append the numbers that matter in dynamics only: bodies, gravity, and positions and rates at the start.
   subroutine append_masses(model, values)

@@ -16,7 +16,7 @@ module mech9_tangent
   use mech9_variable_model, only: variable_model_type
   use mech9_plan, only: plan_type
   use mech9_mechanism_constants, only: renew_constants, align_axes, constants_of_coordinate, constants_of_pose, &
-    constants_of_body
+    constants_of_body, constants_of_stop, constants_of_friction
   implicit none
   private
   public :: tangent_type, law_tangent_type, find_tangent
@@ -42,6 +42,8 @@ module mech9_tangent
     type(law_tangent_type), allocatable :: pairs(:)       !< (M) of the sizes of curves, and of the numbers of users' procedures
     type(law_tangent_type), allocatable :: loads(:)       !< in the order of the loads
     type(law_tangent_type), allocatable :: motors(:)      !< in the order of the motors
+    type(law_tangent_type), allocatable :: stops(:)       !< both ends and restitution, in the order of the stops
+    type(law_tangent_type), allocatable :: frictions(:)   !< coefficients at rest and of sliding, radius, face radius, arm, preload, transition
     type(law_tangent_type), allocatable :: bodies(:)      !< mass, centre and inertia by columns, in the order of the bodies
     real(wp) :: gravity(3) = 0.0_wp            !< of gravity [m/s^2]
     real(wp), allocatable :: start(:, :)       !< (M,0:1) of positions and rates at the start [rad, m]
@@ -354,7 +356,8 @@ contains
     end do
   end function size_of_change
 
-  !> The derivatives of the numbers of drives, couplings, pairs without a fixed axis, loads and motors, and of those of dynamics.
+  !> The derivatives of the numbers of drives, couplings, pairs without a fixed axis, loads and motors, stops and frictions, and of those of
+  !> dynamics.
   subroutine read_laws(model, change, tangent)
     type(model_type), intent(in) :: model           !< the present model
     real(wp), intent(in) :: change(:)               !< the part of the row that belongs to them
@@ -387,6 +390,17 @@ contains
     do i = 1, size(tangent%motors)
       call model%mechanism%motors(i)%motor%constants(values)
       call take_part(values, change, at, tangent%motors(i))
+    end do
+    n = 0
+    if (model%mechanism%has_frictions()) n = size(model%mechanism%frictions)
+    allocate (tangent%stops(size(model%mechanism%stops)), tangent%frictions(n))
+    values = spread(0.0_wp, 1, constants_of_stop)
+    do i = 1, size(tangent%stops)
+      call take_part(values, change, at, tangent%stops(i))
+    end do
+    values = spread(0.0_wp, 1, constants_of_friction)
+    do i = 1, size(tangent%frictions)
+      call take_part(values, change, at, tangent%frictions(i))
     end do
     values = spread(0.0_wp, 1, constants_of_body)
     do i = 1, size(tangent%bodies)

@@ -29,7 +29,7 @@ module mech9_force_gradient
   use mech9_load_gradient, only: load_gradient_type, new_load_gradient, reads_motions, find_loads, add_load_rows, &
     vary_loads, by_loads
   use mech9_parameter_changes, only: parameter_changes_type, list_changes, list_bodies, find_series, by_constants, by_masses, &
-    by_couplings, by_drives
+    by_couplings, by_drives, by_held
   implicit none
   private
   public :: force_gradient_type, new_force_gradient, needs_motions, find_force_gradient
@@ -40,6 +40,7 @@ module mech9_force_gradient
     real(wp), allocatable :: by_rate(:, :)             !< (free,free) the same by the rates
     real(wp), allocatable :: by_acceleration(:, :)     !< (free,free) the same by the accelerations: the coefficients of motion
     real(wp), allocatable :: by_parameters(:, :)       !< (P,free) of each force, by each parameter
+    real(wp), allocatable :: given(:)                  !< (M) forces on coordinates beside the loads; not allocated: none [N m, N]
     class(gradient_arithmetic_type), allocatable, private :: arithmetic   !< of a plane or of space
     integer, private :: d = 0                                             !< numbers of a twist
     class(plan_type), allocatable, private :: plan                        !< in this arithmetic
@@ -227,6 +228,7 @@ contains
       if (allocated(err)) return
       call read_rows(i, self)
       call vary_numbers(model, state, motion%tangents, self, self%by_parameters(:, i))
+      if (allocated(motion%held)) call by_held(self%plan, motion%held, self%twists, self%d, self%rows, self%by_parameters(:, i))
     end do
   end subroutine find_from_frames
 
@@ -257,6 +259,7 @@ contains
     call self%arithmetic%find_wrenches(state, self%held%frames(:, 2, :))
     call find_loads(model, self%plan, state, self%arithmetic, self%loads, self%held, err)
     if (allocated(err)) return
+    if (allocated(self%given)) self%held%coordinates(2, :) = self%held%coordinates(2, :) - self%given
     if (self%changes%moves_links) self%link_wrenches = self%held%frames(:, 2, :)
     call sum_inward(self%plan, 3*self%d, self%held%frames)
     call eliminate_rows(self%plan, self%d, 2, state, self%twists%step, self%third%couplings, self%maps, blocks, self%held)

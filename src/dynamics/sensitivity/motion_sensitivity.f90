@@ -25,7 +25,7 @@ module mech9_motion_sensitivity
   !> The derivatives of the free coordinates by all parameters, and what finds those of the whole motion.
   type :: motion_sensitivity_type
     type(varied_motion_type) :: motion             !< of all coordinates and frames
-    type(force_gradient_type), private :: gradient !< derivatives of the forces that the motion requires
+    type(force_gradient_type) :: gradient          !< derivatives of the forces that the motion requires
     real(wp), allocatable :: values(:, :, :)       !< (P,free,0:2) of free coordinates and their derivatives in time [rad, m]
     real(wp), allocatable :: motors(:, :, :)       !< (P,motors,0:1) of the motors' states and their derivatives in time
     real(wp), allocatable :: size_of(:)            !< (P) size that the derivatives by a parameter have at least, for tolerances
@@ -200,8 +200,9 @@ contains
     real(wp) :: factors(n, n), right(n)
     integer :: p
 
-    if (n == 1 .and. coefficients(1, 1) > 0.0_wp) then
-      failed_at = 0
+    failed_at = 0
+    if (n == 0) return
+    if (n == 1 .and. all(coefficients > 0.0_wp)) then
       do p = 1, m
         values(p, 1) = values(p, 1)/coefficients(1, 1)
       end do

@@ -13,7 +13,8 @@ module mech9_parameter_changes
   use mech9_gradient_rows, only: gradient_rows_type, row_of_coordinate, pairing
   implicit none
   private
-  public :: parameter_changes_type, list_changes, list_bodies, find_series, by_constants, by_masses, by_couplings, by_drives
+  public :: parameter_changes_type, list_changes, list_bodies, find_series, by_constants, by_masses, by_couplings, by_drives, &
+    by_held
 
   !> A body whose numbers a parameter changes.
   type :: changed_body_type
@@ -261,4 +262,24 @@ contains
       end associate
     end do
   end subroutine by_drives
+
+  !> Add the changes of a force by driven coordinates that change with parameters beside their drives' numbers.
+  subroutine by_held(plan, held, twists, d, rows, by_parameters)
+    type(plan_type), intent(in) :: plan                !< the plan, in the arithmetic
+    real(wp), intent(in) :: held(:, 0:, :)             !< (P,0:2,M) derivatives of the coordinates, and of their derivatives in time
+    type(frame_twists_type), intent(in) :: twists      !< of the steps
+    integer, intent(in) :: d                           !< numbers of a twist
+    type(gradient_rows_type), intent(in) :: rows       !< rows of the force
+    real(wp), intent(inout) :: by_parameters(:)        !< (P) derivatives of the force by the parameters
+    integer :: order, s, k
+
+    do k = 1, size(held, 3)
+      if (.not. plan%driven(k)) cycle
+      s = plan%step_of(k)
+      do order = 0, 2
+        by_parameters = by_parameters + held(:, order, k)*row_of_coordinate(d, order, twists%step(:, :, s), rows%frames(:, :, s), &
+                                                                           rows%coordinates(:, k))
+      end do
+    end do
+  end subroutine by_held
 end module mech9_parameter_changes

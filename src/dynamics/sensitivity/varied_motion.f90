@@ -40,6 +40,8 @@ module mech9_varied_motion
     real(wp), allocatable :: points(:, :, :, :)     !< (P,3,0:2,points) of the points of the mechanism [m]
     real(wp), allocatable :: given(:, :, :)         !< (P,0:2,free) of the free coordinates [rad, m]
     real(wp), allocatable :: motor(:, :)            !< (P,motors) given, too: of the states of the motors
+    real(wp), allocatable :: held(:, :, :)          !< (P,0:2,M) given, too: of driven coordinates, beside those of their drives' numbers;
+                                                    !< not allocated: none
     real(wp), allocatable :: twists(:, :, :, :)     !< (P,6,0:2,0:M) of the frames
     type(tangent_type), allocatable :: tangents(:)  !< (P) of the constants
     class(plan_type), allocatable :: plan           !< in space
@@ -124,6 +126,7 @@ contains
       return
     end do
     call vary_drives(model, self, self%state%t, self%q)
+    if (allocated(self%held)) self%q = self%q + self%held
     self%q(:, :, self%plan%free) = self%given
     do b = 1, size(self%plan%blocks)
       do order = 0, 2

@@ -3,8 +3,11 @@
 !> Directions are integrated with the motion by its exact variational equations, those of the derivatives by parameters: each direction is
 !> the derivative by a parameter that sets no number. They are made orthonormal again and again; the logarithms of what this takes off
 !> are summed (Benettin, Galgani, Giorgilli and Strelcyn; Shimada and Nagashima in docs/reference/bibliography.md). Directions are compared
-!> by all coordinates and their rates, each in its unit, so that a change of independent coordinates does not change them.
+!> by all coordinates and their rates, each in its unit, so that a change of independent coordinates does not change them. Events carry
+!> them on by their derivatives (mech9_event_variation). Where a stop or friction holds a coordinate, neighbouring motions become the same:
+!> directions are lost for good, whose exponents are minus infinity.
 module mech9_exponents
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_negative_inf, ieee_quiet_nan
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_usage, exit_data, exit_singular
   use mech9_text, only: to_text
@@ -13,9 +16,11 @@ module mech9_exponents
   use mech9_partition, only: free_coordinate
   use mech9_variable_model, only: variable_model_type
   use mech9_event_failures, only: failure_event_sensitivity
+  use mech9_event_variation, only: several_impacts, no_motion_at_rest, drive_jumps
   use mech9_simulation_failures, only: failure_angles_sensitivity
   use mech9_simulation, only: interruption_type
   use mech9_sensitivity, only: sensitivity_type
+  use mech9_motion_sensitivity, only: motion_sensitivity_type
   use mech9_free_simulation, only: free_simulation_type
   use mech9_model_motion, only: model_motion_type
   implicit none
@@ -32,6 +37,8 @@ module mech9_exponents
   real(wp), parameter :: growth = 1.5_wp
   !> Beyond this difference directions that were integrated since the last time are parallel within the tolerances.
   real(wp), parameter :: parallel = 18.0_wp
+  !> A direction is lost at an event where less than this part of it is left across those before: round-off, far below what parallel ones have.
+  real(wp), parameter :: lost_part = 1.0e-11_wp
 
   !> The exponents and how they were found.
   type :: exponents_found_type
@@ -44,11 +51,13 @@ module mech9_exponents
     integer :: states = 0                     !< dimension of the state without time: so many exponents there are
     integer :: orthonormalised = 0            !< how often directions were made orthonormal
     integer :: coordinate_changes = 0         !< of the independent coordinates
+    integer :: lost = 0                       !< directions that were lost at events; the exponents of so many are minus infinity
   end type exponents_found_type
 
   !> Sums of logarithms at the times at which directions were made orthonormal.
   type :: log_sums_type
     integer :: count = 0                      !< how many times
+    real(wp), allocatable :: lost_at(:)       !< (K) times at which directions were lost; huge: they were not [s]
     real(wp), allocatable :: times(:)         !< the times, then room for more [s]
     real(wp), allocatable :: sums(:, :)       !< (K,times) since the end of the transient
   contains
@@ -190,8 +199,9 @@ contains
     call simulation%begin_sensitivity(variable, 2, unused, err)
     if (allocated(err)) return
     call set_start(simulation)
+    allocate (sums%lost_at(count), source=huge(start))
     call simulation%start(err, interruption)
-    if (.not. allocated(err)) call orthonormalise(simulation, 0.0_wp, logs, err)
+    if (.not. allocated(err)) call orthonormalise(simulation, 0.0_wp, .true., sums%lost_at, logs, err)
     longest = (found%to - found%from)/(kept_times*least_in_each)
     if (.not. allocated(err)) call advance(simulation, found%from, longest, found, sums, err)
     if (allocated(err)) return
@@ -200,6 +210,7 @@ contains
     call advance(simulation, found%to, longest, found, sums, err)
     if (allocated(err)) return
     call evaluate(sums, found)
+    found%lost = count_lost(sums)
     found%coordinate_changes = size(simulation%coordinate_changes)
   end subroutine follow
 
@@ -232,8 +243,9 @@ contains
     type(log_sums_type), intent(inout) :: sums                  !< gets the sums
     type(error_type), allocatable, intent(out) :: err           !< allocated if it failed
     real(wp) :: logs(found_size(simulation)), from, to, since, interval, spread
-    logical :: at_joint
+    logical :: at_joint, passed
 
+    passed = .false.
     simulation%end = t
     since = simulation%motion%t
     to = since
@@ -241,13 +253,17 @@ contains
     do while (abs(t - to) > 0.0_wp)
       call simulation%stride(t, from, to, at_joint, err)
       if (allocated(err)) return
+      passed = passed .or. at_joint
       if (abs(t - to) > 0.0_wp .and. (at_joint .or. abs(to - since) < interval)) cycle
       if (at_joint) call simulation%leave_joint(err)
       if (allocated(err)) return
-      call orthonormalise(simulation, to - from, logs, err)
+      call orthonormalise(simulation, to - from, passed, sums%lost_at, logs, err)
       if (allocated(err)) return
+      passed = .false.
       found%orthonormalised = found%orthonormalised + 1
-      spread = maxval(logs) - minval(logs)
+      spread = 0.0_wp
+      if (count_lost(sums) < size(logs)) spread = maxval(logs, mask=sums%lost_at >= huge(to)) &
+                                                  - minval(logs, mask=sums%lost_at >= huge(to))
       if (spread > parallel .and. size(logs) > 1) then
         call raise(err, exit_data, 'the directions become parallel within one step; ask for fewer exponents, or for a smaller '// &
                    'relative_tolerance in &solver')
@@ -269,13 +285,15 @@ contains
   end function found_size
 
   !> Make the directions orthonormal at the end of a step, each one to those before it, and go on from there.
-  subroutine orthonormalise(simulation, step, logs, err)
+  subroutine orthonormalise(simulation, step, passed, lost_at, logs, err)
     type(free_simulation_type), intent(inout) :: simulation   !< the motion at the end of a step
     real(wp), intent(in) :: step                              !< length of this step [s]
+    logical, intent(in) :: passed                             !< events were passed since the last time
+    real(wp), intent(inout) :: lost_at(:)                     !< (K) times at which directions were lost; huge: they were not [s]
     real(wp), intent(out) :: logs(:)                          !< (K) logarithms of the lengths that the directions had across those before
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
     real(wp), allocatable :: directions(:, :)
-    real(wp) :: along, length
+    real(wp) :: along, length, before
     integer :: p, r, again
 
     logs = 0.0_wp
@@ -283,26 +301,55 @@ contains
     if (.not. allocated(err)) call simulation%motion%system%show_sensitivity(err)
     if (allocated(err)) return
     call take_directions(simulation, directions)
-    associate (values => simulation%motion%system%sensitivity%values, motors => simulation%motion%system%sensitivity%motors)
-      do p = 1, size(logs)
-        ! twice is enough against round-off
-        do again = 1, 2
-          do r = 1, p - 1
-            along = dot_product(directions(:, r), directions(:, p))
-            directions(:, p) = directions(:, p) - along*directions(:, r)
-            values(p, :, :) = values(p, :, :) - along*values(r, :, :)
-            motors(p, :, :) = motors(p, :, :) - along*motors(r, :, :)
-          end do
+    do p = 1, size(logs)
+      if (lost_at(p) < huge(length)) cycle
+      before = norm2(directions(:, p))
+      ! twice is enough against round-off
+      do again = 1, 2
+        do r = 1, p - 1
+          along = dot_product(directions(:, r), directions(:, p))
+          directions(:, p) = directions(:, p) - along*directions(:, r)
+          call combine(simulation%motion%system%sensitivity, p, 1.0_wp, r, -along)
         end do
-        length = norm2(directions(:, p))
-        logs(p) = log(length)
-        directions(:, p) = directions(:, p)/length
-        values(p, :, :) = values(p, :, :)/length
-        motors(p, :, :) = motors(p, :, :)/length
       end do
-    end associate
+      length = norm2(directions(:, p))
+      if (passed .and. length <= lost_part*before) then
+        lost_at(p) = simulation%motion%t
+        directions(:, p) = 0.0_wp
+        call combine(simulation%motion%system%sensitivity, p, 0.0_wp, p, 0.0_wp)
+        cycle
+      end if
+      logs(p) = log(length)
+      directions(:, p) = directions(:, p)/length
+      call combine(simulation%motion%system%sensitivity, p, 1.0_wp/length, p, 0.0_wp)
+    end do
     call simulation%motion%restart((simulation%motion%t), simulation%motion%system%vector(), err, step)
   end subroutine orthonormalise
+
+  !> Replace a direction by a sum of two, in all that is integrated and held.
+  pure subroutine combine(sensitivity, p, factor, r, other_factor)
+    type(motion_sensitivity_type), intent(inout) :: sensitivity   !< the directions
+    integer, intent(in) :: p                                      !< number of the direction
+    real(wp), intent(in) :: factor                                !< of itself
+    integer, intent(in) :: r                                      !< number of the other one
+    real(wp), intent(in) :: other_factor                          !< of the other one
+
+    associate (values => sensitivity%values, motors => sensitivity%motors)
+      values(p, :, :) = factor*values(p, :, :) + other_factor*values(r, :, :)
+      motors(p, :, :) = factor*motors(p, :, :) + other_factor*motors(r, :, :)
+      if (.not. allocated(sensitivity%motion%held)) return
+      associate (held => sensitivity%motion%held)
+        held(p, :, :) = factor*held(p, :, :) + other_factor*held(r, :, :)
+      end associate
+    end associate
+  end subroutine combine
+
+  !> How many directions were lost.
+  pure integer function count_lost(sums)
+    type(log_sums_type), intent(in) :: sums   !< the sums
+
+    count_lost = count(sums%lost_at < huge(sums%lost_at))
+  end function count_lost
 
   !> Take the directions by all coordinates and rates, in their units, and the states of motors.
   subroutine take_directions(simulation, directions)
@@ -386,6 +433,12 @@ contains
       if (i == kept_times) found%times(i) = found%to
       found%history(:, i) = sums%at(found%times(i))/abs(found%times(i) - found%from)
     end do
+    do k = 1, size(unordered)
+      if (sums%lost_at(k) >= huge(whole)) cycle
+      unordered(k) = ieee_value(whole, ieee_negative_inf)
+      where (abs(found%times - found%from) >= (sums%lost_at(k) - found%from)*sign(1.0_wp, found%to - found%from)) &
+        found%history(k, :) = unordered(k)
+    end do
     ! exponents that are nearly equal may stand in the other order
     allocate (order(size(unordered)))
     do k = 1, size(unordered)
@@ -393,7 +446,9 @@ contains
     end do
     found%exponents = unordered(order)
     found%history = found%history(order, :)
+    found%errors = ieee_value(whole, ieee_quiet_nan)
     do k = 1, size(unordered)
+      if (sums%lost_at(order(k)) < huge(whole)) cycle
       found%errors(k) = sqrt(sum((means(order(k), :) - sum(means(order(k), :))/blocks)**2)/(blocks - 1)/blocks)
     end do
   end subroutine evaluate
@@ -409,11 +464,29 @@ contains
     t = err%failure%t
     if (err%failure%kind == failure_event_sensitivity) then
       number = err%failure%number
-      call raise(err, exit_singular, 'at t = '//to_text(t, 8)//' s stop '//to_text(number)//' is hit, and exponents are not '// &
-                 'known through impacts; make the stop compliant by stiffness=')
+      call raise(err, exit_singular, 'at t = '//to_text(t, 8)//' s '//cause_at_event(number, err%failure%limit)//', where '// &
+                 'exponents do not exist; change the start a little')
     else if (err%failure%kind == failure_angles_sensitivity) then
       call raise(err, exit_singular, 'at t = '//to_text(t, 8)//' s a ball joint comes near gimbal lock, and exponents are not '// &
                  'known in other angles; turn the axes of the joint by axis= and zero=')
     end if
   end subroutine explain_refusal
+
+  !> Why an event has no derivatives.
+  pure function cause_at_event(number, cause) result(text)
+    integer, intent(in) :: number   !< of the stop or the friction
+    integer, intent(in) :: cause    !< one of those of mech9_event_variation
+    character(len=:), allocatable :: text
+
+    select case (cause)
+    case (several_impacts)
+      text = 'stop '//to_text(number)//' is hit together with another one'
+    case (no_motion_at_rest)
+      text = 'the pair of friction '//to_text(number)//' comes to rest without an acceleration'
+    case (drive_jumps)
+      text = 'the rate of a drive jumps while a stop or friction holds a coordinate'
+    case default
+      text = 'stop '//to_text(number)//' is met without a rate'
+    end select
+  end function cause_at_event
 end module mech9_exponents

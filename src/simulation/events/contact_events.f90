@@ -6,14 +6,14 @@ module mech9_contact_events
   use mech9_kinds, only: wp
   use mech9_event_tolerances, only: touching, drawn_behind_stop, jumped_behind, least_rebound, endless_part, pressing
   use mech9_error, only: error_type, raise, exit_data, exit_singular
-  use mech9_event_failures, only: failure_event_sensitivity, failure_stop_start, failure_contact_start, &
-    failure_contact_behind
+  use mech9_event_failures, only: failure_stop_start, failure_contact_start, failure_contact_behind
   use mech9_result_units, only: unit_of, unit_name
   use mech9_motion_event, only: motion_event_type, motion_events_type, event_impact, event_close, event_open, event_lift, &
     event_stick, event_slip
   use mech9_motion_system, only: motion_system_type
   use mech9_stop_contacts, only: stop_contact_type, stop_contacts_type, gap_motion, gap_acceleration
   use mech9_contact_motion, only: correct_rates
+  use mech9_event_variation, only: impact_type
   use mech9_contact_equations, only: contact_equations_type, contact_outcome_type, find_contact_equations, find_impact, find_pushing
   implicit none
   private
@@ -55,7 +55,7 @@ contains
 
   !> Meet all contacts at the present state of the system, whose independent rates change at impacts. A compliant end that is met or left is
   !> noted alone. Fails where drives move a coordinate beyond its stop.
-  subroutine meet_contacts(system, met, rubbing, of_held, contacts, impulses, changes, holds_change, events, err)
+  subroutine meet_contacts(system, met, rubbing, of_held, contacts, impulses, changes, impact, holds_change, events, err)
     class(motion_system_type), intent(inout) :: system                     !< the system, moved to the time, with all rates
     integer, intent(in) :: met                                             !< number of the end that is met or left; 0: none
     integer, intent(in) :: rubbing                 !< number of the contact of links that comes to rest or can stick no longer; 0: none
@@ -63,6 +63,7 @@ contains
     type(stop_contacts_type), intent(inout) :: contacts                    !< all ends; those that are closed and held change
     real(wp), intent(out) :: impulses(:)                                   !< (M) on coordinates, positive while they grow [N m s, N s]
     real(wp), intent(out) :: changes(:)                                    !< (M) of the rates of all coordinates [rad/s, m/s]
+    type(impact_type), intent(out) :: impact                               !< on stops; not allocated parts: there is none
     logical, intent(out) :: holds_change                                   !< other coordinates are to be held
     type(motion_events_type), intent(inout) :: events                      !< gets the events
     type(error_type), allocatable, intent(out) :: err                      !< allocated if it failed
@@ -100,13 +101,7 @@ contains
     call find_outcome(system, contacts, touch, met, merge(0, rubbing, comes_to_rest), by_contact, ends_after, outcome, err)
     if (allocated(err)) return
     changes = changes + system%state%dq
-    if (allocated(system%sensitivity) .and. &
-        (any(by_contact > 0.0_wp) .or. any(outcome%holds .neqv. contacts%ends(touch)%held))) then
-      call raise(err, exit_singular, failure_event_sensitivity)
-      err%failure%t = system%state%t
-      err%failure%number = contacts%ends(touch(maxloc(by_contact(1, :), dim=1)))%stop
-      return
-    end if
+    if (any(by_contact(1, :) > 0.0_wp)) impact = impact_of(contacts%ends, touch, by_contact(1, :), ends_after)
     do i = 1, size(touch)
       associate (end => contacts%ends(touch(i)))
         if (end%is_stop()) then
@@ -132,6 +127,20 @@ contains
         system%state%contact_force(:, contacts%ends(touch(i))%contact) = outcome%impulse(:, i)
     end do
   end subroutine meet_contacts
+
+  !> The impact on ends of stops.
+  pure type(impact_type) function impact_of(ends, touch, impulse, ends_after) result(impact)
+    type(stop_contact_type), intent(in) :: ends(:)     !< all ends
+    integer, intent(in) :: touch(:)                    !< numbers of those that touch
+    real(wp), intent(in) :: impulse(:)                 !< (touch) along their normals [N m s, N s]
+    real(wp), intent(in) :: ends_after(:)              !< (touch) time until endless impacts end; negative: there are none [s]
+    logical :: has(size(touch))
+
+    has = impulse > 0.0_wp .and. ends(touch)%contact == 0
+    impact%ends = pack(touch, has)
+    impact%impulse = pack(impulse, has)
+    impact%restitution = pack(merge(0.0_wp, ends(touch)%restitution, ends_after >= 0.0_wp), has)
+  end function impact_of
 
   !> Fail where a ball is far behind its surface that is open: it has come round an end of a path.
   subroutine refuse_jump(system, end, err)

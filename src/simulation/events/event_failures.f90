@@ -9,7 +9,9 @@ module mech9_event_failures
   !> Drives move or press a coordinate beyond a rigid stop: number (of the stop), coordinates, values (the limit, the rate), name (unit
   !> of the limit), t.
   integer, parameter :: failure_stop_violated = 1401
-  !> Rates jump at an impact, behind which derivatives by parameters are not known: number (of the stop), t.
+  !> An event has no derivatives by parameters: limit (1: a stop is met without a rate, 2: two impacts at once, 3: a start on a stop that
+  !> parameters move, 4: a pair comes to rest without an acceleration, 5: the rate of a drive jumps, 6: quantities follow a column that
+  !> may jump), number (of the stop, for 4 of the friction), t.
   integer, parameter :: failure_event_sensitivity = 1402
   !> The start lies behind a rigid stop: number (of the stop), coordinates, values (the coordinate, its limit), name (of their unit).
   integer, parameter :: failure_stop_start = 1403

@@ -6,7 +6,8 @@ module mech9_event_tolerances
   implicit none
   private
   public :: round_off_of_limit, touching, drawn_behind_stop, jumped_behind, round_off_of_impacts, least_rebound, endless_part, &
-    most_events, most_events_at_once, limit_of_sticking, at_rest, still, tied, round_off_of_sticking, beyond_all_bounds, pressing
+    grazing, most_events, most_events_at_once, limit_of_sticking, at_rest, still, tied, round_off_of_sticking, beyond_all_bounds, &
+    pressing
 
   ! Drives and outputs.
 
@@ -32,6 +33,10 @@ module mech9_event_tolerances
   !> ... and if they would end within this part of the duration of the motion. Their end is worked out; the contact pushes as much
   !> until then as the impacts that are left out.
   real(wp), parameter :: endless_part = 1.0e-6_wp
+  !> An end is met without a rate, by which derivatives would be infinite, where its rate would lift the coordinate by this part of
+  !> `least_rebound`: endless impacts have larger ones before they are left out, and the rate of a motion that just touches is lost in the
+  !> round-off of the gap.
+  real(wp), parameter :: grazing = 1.0e-6_wp
   !> A contact that touches is pressed where its acceleration towards the end is more than this part of the largest: far above round-off.
   real(wp), parameter :: pressing = 1.0e-9_wp
 

@@ -263,17 +263,21 @@ contains
 
   !> Integrate the derivatives by all parameters as well, from those of the free coordinates and their rates that are given, or
   !> from those that the start of the motion has. To be called before the integration begins.
-  subroutine begin_sensitivity(self, variable, err, values, motors)
+  subroutine begin_sensitivity(self, variable, err, values, motors, held)
     class(motion_system_type), intent(inout) :: self        !< the motion system, with its motion
     class(variable_model_type), intent(inout) :: variable   !< the model as a function of its parameters
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     real(wp), intent(in), optional :: values(:, 0:, :)      !< (P,0:2,M) derivatives of all coordinates
     real(wp), intent(in), optional :: motors(:, :)          !< (P,motors) those of the motors' states
+    real(wp), allocatable, intent(in), optional :: held(:, :, :)   !< (P,0:2,M) those of driven coordinates beside their drives' numbers
 
     allocate (self%sensitivity)
     call new_motion_sensitivity(variable, self%model, self%plan, self%dynamics, self%sensitivity, err)
     if (allocated(err)) return
     if (present(motors)) self%sensitivity%motors(:, :, 0) = motors
+    if (present(held)) then
+      if (allocated(held)) allocate (self%sensitivity%motion%held(size(held, 1), 0:2, size(held, 3)), source=held)
+    end if
     if (present(values)) then
       self%sensitivity%values(:, :, 0) = values(:, 0, self%plan%free)
       self%sensitivity%values(:, :, 1) = values(:, 1, self%plan%free)

@@ -1,0 +1,416 @@
+!> Derivatives of a motion by parameters through an event: a jump of rates or accelerations at a time that depends on the parameters.
+!>
+!> With the state x, the event h(t, x, p) = 0 and the jump x' = g(t, x, p), derivatives s of the state at a fixed time become those at the
+!> event by the derivative of its time, dt/dp = -(h_x s + h_p)/(rate of h), as s + (rate of x) dt/dp. They pass the jump by the derivative
+!> of g, and go back to a fixed time by - (rate of x') dt/dp. As a matrix this is the saltation g_x + (f' - g_x f - g_t) h_x/(h_t + h_x f):
+!> M. A. Aizerman and F. R. Gantmakher, On the Stability of Periodic Motions, J. Appl. Math. Mech. 22 (1958); P. C. Müller, Calculation of
+!> Lyapunov Exponents for Dynamic Systems with Discontinuities, Chaos Solitons Fractals 5 (1995); R. I. Leine and H. Nijmeijer, Dynamics and
+!> Bifurcations of Non-Smooth Mechanical Systems, Springer 2004; with parameters I. A. Hiskens and M. A. Pai, Trajectory Sensitivity
+!> Analysis of Hybrid Systems, IEEE Trans. Circuits Syst. I 47 (2000).
+!>
+!> The derivative of an impact follows from a(q) d = J(q)^T L, with the coefficients of motion a, the changes d of the free rates and the
+!> impulses L of the stops: a d' = -(a)' d + (J^T)' L + J^T L'. The first two terms are those of a mechanism at rest with the accelerations
+!> d under the forces L; L' is what rates after the impact need, u' = -e u.
+module mech9_event_variation
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, add_place, exit_singular
+  use mech9_event_failures, only: failure_event_sensitivity
+  use mech9_event_tolerances, only: grazing, least_rebound
+  use mech9_cholesky, only: cholesky_factorize, cholesky_solve
+  use mech9_state, only: state_type, copy_state
+  use mech9_tangent, only: tangent_type
+  use mech9_variable_model, only: variable_model_type
+  use mech9_integration_tolerances, only: round_off_of_jumps
+  use mech9_lagrange, only: find_equations, complete_accelerations
+  use mech9_frame_motion, only: place_all
+  use mech9_motion_system, only: motion_system_type
+  use mech9_stop_contacts, only: stop_contact_type
+  use mech9_contact_equations, only: contact_equations_type, find_contact_equations
+  implicit none
+  private
+  public :: event_variation_type, impact_type, several_impacts, no_motion_at_rest, drive_jumps
+
+  !> Causes that leave an event without derivatives: the end of a stop is met without a rate; two impacts at one time; a start on a stop that a
+  !> parameter moves; a pair comes to rest without an acceleration; the rate of a drive jumps; quantities follow a column that jumps.
+  integer, parameter :: grazes = 1, several_impacts = 2, start_on_stop = 3, no_motion_at_rest = 4, drive_jumps = 5, followed = 6
+
+  !> An impact, as the motion had it.
+  type :: impact_type
+    integer, allocatable :: ends(:)          !< numbers of the ends of stops with an impulse
+    real(wp), allocatable :: impulse(:)      !< (ends) their impulses, which are above zero [N m s, N s]
+    real(wp), allocatable :: restitution(:)  !< (ends) that was used: 0 where endless impacts are left out
+  end type impact_type
+
+  !> The derivatives at one event: at first at its time held fixed, then carried along with the time of the event.
+  type :: event_variation_type
+    real(wp), allocatable :: time(:)          !< (P) derivatives of the time of the event [s]
+    real(wp), allocatable :: q(:, :, :)       !< (P,0:1,M) derivatives of all coordinates and their rates
+    real(wp), allocatable :: motors(:, :)     !< (P,motors) those of the states of motors
+    real(wp), allocatable :: dq(:)            !< (M) rates of all coordinates before the event [rad/s, m/s]
+    real(wp), allocatable :: ddq(:)           !< (M) their accelerations before it [rad/s^2, m/s^2]
+    real(wp), allocatable :: motor_rates(:)   !< (motors) rates of the states of motors before it
+  contains
+    procedure :: begin
+    procedure :: set_time
+    procedure :: meet_stop
+    procedure :: come_to_rest
+    procedure :: pass_impact
+    procedure :: put_behind
+    procedure :: hand_on
+    procedure :: check_start
+  end type event_variation_type
+
+contains
+
+  !> The derivatives of the limit at an end of a stop by all parameters [rad, m].
+  pure function varied_limit(tangents, end) result(limits)
+    type(tangent_type), intent(in) :: tangents(:)   !< (P) derivatives of the constants
+    type(stop_contact_type), intent(in) :: end      !< the end of a stop
+    real(wp) :: limits(size(tangents))
+
+    limits = varied_number(tangents, end, merge(1, 2, end%direction > 0))
+  end function varied_limit
+
+  !> The derivatives of a number of a stop by all parameters.
+  pure function varied_number(tangents, end, place) result(changes)
+    type(tangent_type), intent(in) :: tangents(:)   !< (P) derivatives of the constants
+    type(stop_contact_type), intent(in) :: end      !< an end of the stop
+    integer, intent(in) :: place                    !< 1: the low end, 2: the high one, 3: the restitution
+    real(wp) :: changes(size(tangents))
+    integer :: p
+
+    changes = 0.0_wp
+    do p = 1, size(tangents)
+      if (tangents(p)%stops(end%stop)%varies) changes(p) = tangents(p)%stops(end%stop)%change(place)
+    end do
+  end function varied_number
+
+  !> Begin at the time of an event, which at first does not change with parameters.
+  subroutine begin(self, system, of_held, err)
+    class(event_variation_type), intent(inout) :: self     !< the derivatives
+    class(motion_system_type), intent(inout) :: system     !< the system before the event, with its motion
+    real(wp), intent(in) :: of_held(:)                     !< (M) rates that held coordinates would have if nothing held them [rad/s, m/s]
+    type(error_type), allocatable, intent(out) :: err      !< allocated if they do not exist in this position
+
+    if (any(abs(of_held) > 0.0_wp)) call refuse(system, drive_jumps, 0, err)
+    if (.not. allocated(err)) call system%show_sensitivity(err)
+    if (allocated(err)) return
+    associate (q => system%sensitivity%motion%q)
+      allocate (self%q(size(q, 1), 0:1, size(q, 3)))
+      self%q = q(:, 0:1, :)
+    end associate
+    self%motors = system%sensitivity%motors(:, :, 0)
+    self%dq = system%state%dq
+    self%ddq = system%state%ddq
+    self%motor_rates = spread(0.0_wp, 1, size(self%motors, 2))
+    if (allocated(system%state%motor)) self%motor_rates = system%state%motor_rate
+    self%time = spread(0.0_wp, 1, size(self%q, 1))
+  end subroutine begin
+
+  !> Carry the derivatives along with the time of the event.
+  pure subroutine set_time(self, time)
+    class(event_variation_type), intent(inout) :: self     !< the derivatives at a fixed time
+    real(wp), intent(in) :: time(:)                        !< (P) derivatives of the time [s]
+    integer :: p
+
+    self%time = time
+    do p = 1, size(time)
+      self%q(p, 0, :) = self%q(p, 0, :) + time(p)*self%dq
+      self%q(p, 1, :) = self%q(p, 1, :) + time(p)*self%ddq
+      self%motors(p, :) = self%motors(p, :) + time(p)*self%motor_rates
+    end do
+  end subroutine set_time
+
+  !> Take the time at which a rigid end of a stop is met. Fails where it is met without a rate.
+  subroutine meet_stop(self, system, end, err)
+    class(event_variation_type), intent(inout) :: self     !< the derivatives, at a fixed time
+    class(motion_system_type), intent(in) :: system        !< the system
+    type(stop_contact_type), intent(in) :: end             !< the end
+    type(error_type), allocatable, intent(out) :: err      !< allocated if there are no derivatives
+
+    associate (k => end%coordinate, limits => varied_limit(system%sensitivity%motion%tangents, end))
+      if (.not. self%dq(k)**2 > 2.0_wp*grazing*least_rebound*abs(self%ddq(k))*end%unit(system%plan)) then
+        call refuse(system, grazes, end%stop, err)
+      else
+        call self%set_time((limits - self%q(:, 0, k))/self%dq(k))
+      end if
+    end associate
+  end subroutine meet_stop
+
+  !> Take the time at which a coordinate comes to rest, as a pair with friction that slips. Fails where it has no acceleration there.
+  subroutine come_to_rest(self, system, coordinate, number, err)
+    class(event_variation_type), intent(inout) :: self     !< the derivatives, at a fixed time
+    class(motion_system_type), intent(in) :: system        !< the system
+    integer, intent(in) :: coordinate                      !< number of the coordinate
+    integer, intent(in) :: number                          !< of the friction
+    type(error_type), allocatable, intent(out) :: err      !< allocated if there are no derivatives
+
+    if (.not. abs(self%ddq(coordinate)) > 0.0_wp) then
+      call refuse(system, no_motion_at_rest, number, err)
+    else
+      call self%set_time(-self%q(:, 1, coordinate)/self%ddq(coordinate))
+    end if
+  end subroutine come_to_rest
+
+  !> Fail because an event has no derivatives.
+  subroutine refuse(system, cause, number, err)
+    class(motion_system_type), intent(in) :: system        !< the system at the event
+    integer, intent(in) :: cause                           !< one of the constants above
+    integer, intent(in) :: number                          !< of the stop or the friction
+    type(error_type), allocatable, intent(out) :: err      !< the failure
+
+    call raise(err, exit_singular, failure_event_sensitivity)
+    err%failure%t = system%state%t
+    err%failure%number = number
+    err%failure%limit = cause
+    if (number == 0) return
+    if (cause == no_motion_at_rest) then
+      call add_place(err, place=system%model%mechanism%frictions(number)%place)
+    else
+      call add_place(err, place=system%model%mechanism%stops(number)%place)
+    end if
+  end subroutine refuse
+
+  !> Pass an impact on rigid stops. No stop and no friction holds a coordinate in the plan of the system. Fails where derivatives do not
+  !> exist.
+  subroutine pass_impact(self, system, contacts, impact, at_start, err)
+    class(event_variation_type), intent(inout) :: self     !< the derivatives, at a fixed time; then carried along, behind the impact
+    class(motion_system_type), intent(inout) :: system     !< the system, with all rates behind the impact; stays as it is
+    type(stop_contact_type), intent(in) :: contacts(:)     !< all ends, as before the impact
+    type(impact_type), intent(in) :: impact                !< the impact
+    logical, intent(in) :: at_start                        !< the motion begins with it
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    type(contact_equations_type) :: equations
+    type(state_type) :: behind
+    real(wp), dimension(size(self%time), size(impact%ends)) :: before, target
+    integer :: i
+
+    associate (ends => contacts(impact%ends))
+      if (follows_jumps(system)) then
+        call refuse(system, followed, ends(1)%stop, err)
+        return
+      end if
+      if (count(.not. ends%held) > 1) then
+        call refuse(system, several_impacts, ends(findloc(ends%held, .false., dim=1))%stop, err)
+        return
+      end if
+      do i = 1, size(ends)
+        if (.not. (ends(i)%held .or. at_start)) call self%meet_stop(system, ends(i), err)
+        if (allocated(err)) return
+      end do
+      call find_contact_equations(system, [(.false., i=1, system%plan%n_coordinates)], ends, equations, err)
+      if (allocated(err)) return
+      do i = 1, size(ends)
+        before(:, i) = ends(i)%direction*self%q(:, 1, ends(i)%coordinate)
+        target(:, i) = -impact%restitution(i)*before(:, i)
+        if (impact%restitution(i) > 0.0_wp) target(:, i) = target(:, i) - ends(i)%direction*self%dq(ends(i)%coordinate) &
+                                                           *varied_number(system%sensitivity%motion%tangents, ends(i), 3)
+        if (ends(i)%held) target(:, i) = 0.0_wp
+      end do
+      call copy_state(system%state, behind)
+      call give_to(self, system)
+      call add_varied_impact(self, system, ends, impact, behind%dq, err)
+      if (.not. allocated(err)) call meet_targets(system, ends, equations, behind%dq, target, err)
+      if (.not. allocated(err)) self%q = system%sensitivity%motion%q(:, 0:1, :)
+      deallocate (system%sensitivity%motion%held)
+      call copy_state(behind, system%state)
+      if (.not. allocated(err)) call place_all(system%plan, system%state, err)
+    end associate
+  end subroutine pass_impact
+
+  !> Whether derivatives are wanted of quantities that follow a column between outputs, which may jump at events.
+  pure logical function follows_jumps(system)
+    class(motion_system_type), intent(in) :: system        !< the system
+    integer :: i
+
+    follows_jumps = .false.
+    associate (request => system%model%request)
+      if (.not. (request%output%gradients .and. allocated(request%quantities))) return
+      do i = 1, size(request%quantities)
+        follows_jumps = follows_jumps .or. all(request%quantities(i)%take /= [character(len=5) :: 'start', 'end', 'at'])
+      end do
+    end associate
+  end function follows_jumps
+
+  !> Give the derivatives to those of the system, so that all coordinates move along with the time of the event.
+  subroutine give_to(self, system)
+    type(event_variation_type), intent(in) :: self         !< the derivatives, carried along
+    class(motion_system_type), intent(inout) :: system     !< gets them
+    integer :: i, k
+
+    associate (sensitivity => system%sensitivity, plan => system%plan)
+      do i = 1, size(plan%free)
+        sensitivity%values(:, i, 0:1) = self%q(:, :, plan%free(i))
+      end do
+      sensitivity%motors(:, :, 0) = self%motors
+      if (allocated(sensitivity%motion%held)) deallocate (sensitivity%motion%held)
+      allocate (sensitivity%motion%held(size(self%time), 0:2, plan%n_coordinates), source=0.0_wp)
+      do k = 1, plan%n_coordinates
+        if (.not. plan%driven(k)) cycle
+        sensitivity%motion%held(:, 0, k) = self%time*self%dq(k)
+        sensitivity%motion%held(:, 1, k) = self%time*self%ddq(k)
+      end do
+    end associate
+  end subroutine give_to
+
+  !> Add what the derivatives of position and parameters change of the impact, its impulses held. What the mechanism requires at rest
+  !> without accelerations is no part of it, and is taken off.
+  subroutine add_varied_impact(self, system, ends, impact, rates, err)
+    type(event_variation_type), intent(in) :: self         !< the derivatives, carried along
+    class(motion_system_type), intent(inout) :: system     !< with these derivatives; those of the rates change
+    type(stop_contact_type), intent(in) :: ends(:)         !< ends of stops with impulses
+    type(impact_type), intent(in) :: impact                !< the impulses
+    real(wp), intent(in) :: rates(:)                       !< (M) behind the impact [rad/s, m/s]
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    real(wp) :: changes(size(self%time), size(system%plan%free)), part
+    integer :: i, j
+
+    changes = 0.0_wp
+    associate (sensitivity => system%sensitivity, plan => system%plan)
+      allocate (sensitivity%gradient%given(plan%n_coordinates))
+      do i = 0, 1
+        part = real(i, wp)
+        system%state%dq = 0.0_wp
+        system%state%ddq = 0.0_wp
+        call place_all(plan, system%state, err)
+        if (.not. allocated(err)) &
+          call find_equations(system%model%mechanism, plan, system%dynamics, system%state, system%work, err)
+        if (allocated(err)) exit
+        system%work%accelerations = merge(0.0_wp, part*(rates(plan%independent) - self%dq(plan%independent)), &
+                                          plan%driven(plan%independent))
+        call complete_accelerations(plan, system%dynamics, system%work, system%state)
+        sensitivity%gradient%given = 0.0_wp
+        do j = 1, size(ends)
+          associate (force => sensitivity%gradient%given(ends(j)%coordinate))
+            force = force + part*ends(j)%direction*impact%impulse(j)
+          end associate
+        end do
+        call sensitivity%find_accelerations(system%model, system%state, system%work, err)
+        if (allocated(err)) exit
+        changes = changes + (2.0_wp*part - 1.0_wp)*sensitivity%values(:, :, 2)
+      end do
+      deallocate (sensitivity%gradient%given)
+      sensitivity%values(:, :, 1) = sensitivity%values(:, :, 1) + changes
+    end associate
+  end subroutine add_varied_impact
+
+  !> Add the derivatives of the impulses, by which rates behind the impact get theirs.
+  subroutine meet_targets(system, ends, equations, rates, target, err)
+    class(motion_system_type), intent(inout) :: system         !< with the derivatives beside that; gets those of all coordinates
+    type(stop_contact_type), intent(in) :: ends(:)             !< ends of stops with impulses
+    type(contact_equations_type), intent(in) :: equations      !< their equations
+    real(wp), intent(in) :: rates(:)                           !< (M) behind the impact [rad/s, m/s]
+    real(wp), intent(in) :: target(:, :)                       !< (P,ends) derivatives of the rates of their gaps there
+    type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
+    real(wp) :: factors(size(ends), size(ends)), impulses(size(ends))
+    integer :: i, j, p, failed_at
+
+    system%state%dq = rates
+    system%state%ddq = 0.0_wp
+    system%sensitivity%values(:, :, 2) = 0.0_wp
+    call place_all(system%plan, system%state, err)
+    if (.not. allocated(err)) call system%show_sensitivity(err)
+    if (allocated(err)) return
+    factors = equations%g
+    call cholesky_factorize(size(ends), factors, failed_at)
+    if (failed_at > 0) then
+      call refuse(system, several_impacts, ends(failed_at)%stop, err)
+      return
+    end if
+    associate (values => system%sensitivity%values, q => system%sensitivity%motion%q, plan => system%plan)
+      do p = 1, size(target, 1)
+        impulses = target(p, :) - ends%direction*q(p, 1, ends%coordinate)
+        call cholesky_solve(size(ends), factors, impulses)
+        do i = 1, size(plan%free)
+          j = findloc(equations%free, plan%free_places(i), dim=1)
+          values(p, i, 1) = values(p, i, 1) + dot_product(equations%answers(j, 1, :), impulses)
+        end do
+      end do
+    end associate
+    call system%show_sensitivity(err)
+  end subroutine meet_targets
+
+  !> Put the derivatives behind the event into the vector of a system whose held coordinates stay.
+  subroutine put_behind(self, system, t, y, err)
+    class(event_variation_type), intent(in) :: self        !< the derivatives, carried along
+    class(motion_system_type), intent(inout) :: system     !< the system, which goes on behind the event
+    real(wp), intent(in) :: t                              !< time of the event [s]
+    real(wp), intent(inout) :: y(:)                        !< the vector behind it; its derivatives change
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    integer :: i
+
+    call system%move_to(t, y, err)
+    if (.not. allocated(err)) call system%pass_limits(err)
+    if (allocated(err)) return
+    associate (sensitivity => system%sensitivity, free => system%plan%free, state => system%state)
+      do i = 1, size(free)
+        sensitivity%values(:, i, 0) = self%q(:, 0, free(i)) - self%time*state%dq(free(i))
+        sensitivity%values(:, i, 1) = self%q(:, 1, free(i)) - self%time*state%ddq(free(i))
+      end do
+      sensitivity%motors(:, :, 0) = motors_behind(self, state)
+    end associate
+    y = system%vector()
+  end subroutine put_behind
+
+  !> Let another system, in which other coordinates are held, go on with the derivatives behind the event.
+  subroutine hand_on(self, variable, other, err)
+    class(event_variation_type), intent(in) :: self           !< the derivatives, carried along
+    class(variable_model_type), intent(inout) :: variable     !< the model as a function of its parameters
+    class(motion_system_type), intent(inout) :: other         !< the other system, with its motion
+    type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
+    real(wp), allocatable :: values(:, :, :), held(:, :, :)
+    integer :: i, k
+
+    associate (m => other%plan%n_coordinates, n => size(self%time))
+      allocate (values(n, 0:2, m), source=0.0_wp)
+      if (allocated(other%held)) allocate (held(n, 0:2, m), source=0.0_wp)
+      do k = 1, m
+        values(:, 0, k) = self%q(:, 0, k) - self%time*other%state%dq(k)
+        values(:, 1, k) = self%q(:, 1, k) - self%time*other%state%ddq(k)
+      end do
+    end associate
+    if (allocated(held)) then
+      do i = 1, size(other%held)
+        held(:, 0, other%held(i)%coordinate) = self%q(:, 0, other%held(i)%coordinate)
+      end do
+    end if
+    call other%begin_sensitivity(variable, err, values, motors_behind(self, other%state), held)
+  end subroutine hand_on
+
+  !> The derivatives of the states of motors behind the event at a fixed time.
+  pure function motors_behind(self, state) result(motors)
+    type(event_variation_type), intent(in) :: self    !< the derivatives, carried along
+    type(state_type), intent(in) :: state             !< the motion behind the event
+    real(wp) :: motors(size(self%motors, 1), size(self%motors, 2))
+    integer :: i
+
+    motors = self%motors
+    if (.not. allocated(state%motor)) return
+    do i = 1, size(motors, 2)
+      motors(:, i) = motors(:, i) - self%time*state%motor_rate(i)
+    end do
+  end function motors_behind
+
+  !> Fail where a parameter moves a start away from a stop that holds it there, or behind it.
+  subroutine check_start(self, system, ends, err)
+    class(event_variation_type), intent(in) :: self        !< the derivatives at the start
+    class(motion_system_type), intent(in) :: system        !< the system there
+    type(stop_contact_type), intent(in) :: ends(:)         !< all ends, closed or open as they are from the start on
+    type(error_type), allocatable, intent(out) :: err      !< allocated where derivatives do not exist
+    real(wp) :: moves(size(self%time))
+    integer :: i, p
+
+    do i = 1, size(ends)
+      if (.not. (ends(i)%is_rigid .and. ends(i)%closed .and. ends(i)%is_stop())) cycle
+      associate (sensitivity => system%sensitivity, parameters => system%model%parameters)
+        moves = abs(self%q(:, 0, ends(i)%coordinate) - varied_limit(sensitivity%motion%tangents, ends(i)))
+        do p = 1, size(moves)
+          if (size(parameters(p)%targets) == 0) cycle
+          if (moves(p) <= round_off_of_jumps*sensitivity%size_of(p)*ends(i)%unit(system%plan)) cycle
+          call refuse(system, start_on_stop, ends(i)%stop, err)
+          return
+        end do
+      end associate
+    end do
+  end subroutine check_start
+end module mech9_event_variation

@@ -1,0 +1,248 @@
+"""Derivatives by parameters and Lyapunov exponents through the events of motions that are not smooth: impacts on stops against closed forms
+and identities, rest at stops, dependent coordinates of closed chains, drives beside them; what has no derivatives.
+
+Compares the program with itself: derivatives of mechanisms with several coordinates against differences of runs."""
+import json
+import re
+from math import log, sqrt
+
+import numpy as np
+import pytest
+
+from mech9_cases import read_table, run
+
+BOUNCING = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=0,0,1 /
+&body link=2, mass=2 /
+&gravity acceleration=0,0,-9.81 /
+&stop coordinate=1, low=0, restitution=0.9 /
+&initial coordinate=1, position=1 /
+&parameter name='h', sets='initial(1).position' /
+&parameter name='e', sets='stop(1).restitution' /
+&parameter name='g', sets='gravity(1).acceleration(3)' /
+&parameter name='low', sets='stop(1).low' /
+&parameter name='m', sets='body(1).mass' /
+"""
+OSCILLATOR = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&body link=2, mass=1 /
+&load kind='coordinate', coordinate=1, stiffness=1, damping=0.2 /
+&load kind='coordinate', coordinate=1, force=1, law='harmonic', amplitude=1, angular_frequency=2.5, phase=1.5707963267948966 /
+&stop coordinate=1, low=0, restitution=0.8 /
+&initial coordinate=1, position=0.5, velocity=0.1 /
+"""
+FOUR_BAR = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='revolute', point=0.2,0,0, axis=0,0,1 /
+&pair coordinate=3, links=3,4, kind='revolute', point=0.7,0,0, axis=0,0,1, moving_point=1,0,0 /
+&pair coordinate=4, links=1,4, kind='revolute', point=0.6,0,0, axis=0,0,1 /
+&initial coordinate=1, position=0.5, velocity=1 /
+&initial coordinate=2, position=0.3 /
+&initial coordinate=3, position=1 /
+&initial coordinate=4, position=1.7 /
+&body link=2, mass=0.2, centre=0.1,0,0, inertia=0,0,0.0006666666666666667,0,0,0 /
+&body link=3, mass=0.5, centre=0.45,0,0, inertia=0,0,0.010416666666666667,0,0,0 /
+&body link=4, mass=2, centre=0.8,0,0, inertia=0,0,0.026666666666666667,0,0,0 /
+&gravity acceleration=0,-9.81,0 /
+&load kind='coordinate', coordinate=1, damping=0.05 /
+&stop coordinate=4, high=2.3, restitution=0.7 /
+&parameter name='v', sets='initial(1).velocity' /
+&parameter name='m', sets='body(3).mass' /
+&parameter name='l', sets='pair(3).point(1)' /
+&parameter name='e', sets='stop(1).restitution' /
+&parameter name='high', sets='stop(1).high' /
+"""
+FIVE_BAR = """&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1, point=0,0,0 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point=0.1,0.5,0 /
+&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1, point=0.5,0.9,0 /
+&pair coordinate=4, links=4,5, kind='revolute', axis=0,0,1, point=0.9,0.55,0 /
+&pair coordinate=5, links=1,5, kind='revolute', axis=0,0,1, point=1,0,0 /
+&body link=2, mass=1, centre=0.05,0.25,0, inertia=0.02,0.02,0.03,0,0,0 /
+&body link=3, mass=0.5, centre=0.3,0.7,0, inertia=0.02,0.02,0.02,0,0,0 /
+&body link=4, mass=0.7, centre=0.7,0.7,0, inertia=0.02,0.02,0.02,0,0,0 /
+&body link=5, mass=1.2, centre=0.95,0.3,0, inertia=0.02,0.02,0.04,0,0,0 /
+&gravity acceleration=0,-9.81,0 /
+&initial coordinate=2, position=0, velocity=0.5 /
+&parameter name='m', sets='body(3).mass' /
+&parameter name='x', sets='pair(3).point(1)' /
+&parameter name='e', sets='stop(1).restitution' /
+"""
+FREE_CRANK = """&initial coordinate=1, position=0, velocity=-1 /
+&stop coordinate=5, low=-0.2, restitution=0.7 /
+&parameter name='low', sets='stop(1).low' /
+"""
+DRIVEN_CRANK = """&drive coordinate=1, kind='harmonic', amplitude=0.2, angular_frequency=6 /
+&stop coordinate=5, high=1.5, restitution=0.7 /
+&parameter name='w', sets='drive(1).angular_frequency' /
+"""
+CARRIAGE = """&structure cq=1,2,3 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&pair coordinate=2, links=2,3, kind='prismatic', axis=0,1,0 /
+&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1 /
+&body link=2, mass=1 /
+&body link=3, mass=1 /
+&body link=4, mass=0.6, centre=0.5,0,0, inertia=0,0,0.02,0,0,0 /
+&gravity acceleration=0,-9.81,0 /
+&drive coordinate=1, kind='harmonic', amplitude=0.3, angular_frequency=5, phase=0.4 /
+&stop coordinate=2, low=-0.1, restitution=0.3 /
+&stop coordinate=3, low=-1.2, restitution=0.6 /
+&initial coordinate=2, position=0.1 /
+&initial coordinate=3, position=0.5 /
+&parameter name='A', sets='drive(1).amplitude' /
+&parameter name='w', sets='drive(1).angular_frequency' /
+&parameter name='c', sets='body(3).centre(1)' /
+&parameter name='e', sets='stop(1).restitution' /
+&parameter name='low', sets='stop(2).low' /
+"""
+COLUMNS = '&output sensitivities=.true. /\n'
+TIGHT = '&solver relative_tolerance=1e-12, absolute_tolerance=1e-13 /\n'
+
+
+def go(program, folder, text, *words, end=1.0, intervals=1, code=0):
+    """Table, report and standard error of a run."""
+    path, table, report = folder / 'event.nml', folder / 'event.dat', folder / 'event.json'
+    path.write_text(f'{text}&time end={end!r}, intervals={intervals} /\n', encoding='utf-8')
+    done = run(program, path, '--table', table, '--report', report, *words)
+    assert done.returncode == code, done.stderr
+    return read_table(table.read_text()) if code == 0 else None, json.loads(report.read_text()), done.stderr
+
+
+def kinds(report):
+    return [(event['kind'], event['number']) for event in report['events']]
+
+
+def against_differences(checks, program, folder, text, columns, end, intervals, output=COLUMNS, step=1e-5, tol=2e-7):
+    """Derivatives of all columns by all parameters against differences of fourth order of runs in which the same events happen."""
+    table, report, _ = go(program, folder, text + output + TIGHT, end=end, intervals=intervals)
+    plain = re.sub('&parameter.*\n', '', text) + output.replace('sensitivities=.true.', 'sensitivities=.false.')
+    for name, target in re.findall(r"&parameter name='(\w+)', sets='([^']+)'", text):
+        near = {}
+        for i in (-2, -1, 1, 2):
+            value = number_of(text, target) + i * step
+            near[i], other, _ = go(program, folder, plain + TIGHT, '--set', f'{target}={value!r}', end=end, intervals=intervals)
+            checks.true(kinds(other)[:6] == kinds(report)[:6], 'the same events happen', name)
+        for column in columns:
+            slope = (8 * (near[1][column] - near[-1][column]) - near[2][column] + near[-2][column]) / (12 * step)
+            # tolerance: the error of motions, 1e-12 to 1e-11, over the step
+            checks.near(table[f'd({column})/d({name})'], slope, tol, f'{column} by {name}', scale=max(1.0, float(np.abs(slope).max())))
+    return report
+
+
+def number_of(text, target):
+    """A number of a data file by its name."""
+    group, number, name, place = re.match(r'(\w+)\((\d+)\)\.(\w+)(?:\((\d+)\))?', target).groups()
+    group = re.findall(rf'&{group}\s([^/]*)/', text)[int(number) - 1]
+    return float(re.search(rf'\b{name}=([-\d.,e+]+)', group).group(1).strip(',').split(',')[int(place or 1) - 1])
+
+
+def bounce(end, h, e, g):
+    """Height and rate of a body that bounces, and their derivatives by the height of its fall, the restitution and gravity."""
+    t, u = sqrt(2 * h / g), sqrt(2 * h * g)
+    n = 1
+    while t * (1 + 2 * sum(e**k for k in range(1, n + 1))) < end:
+        n += 1
+    flights = 1 + 2 * sum(e**k for k in range(1, n))
+    s, up = end - t * flights, e**n * u
+    by_e = 2 * sum(k * e**(k - 1) for k in range(1, n))
+    slopes = {}
+    for name, ds, dup, dg in (('h', -t / (2 * h) * flights, up / (2 * h), 0), ('e', -t * by_e, n * up / e, 0),
+                              ('g', t / (2 * g) * flights, up / (2 * g), 1)):
+        slopes[name] = (s * dup + (up - g * s) * ds - s**2 / 2 * dg, dup - g * ds - s * dg)
+    return (up * s - g * s**2 / 2, up - g * s), slopes
+
+
+@pytest.mark.parametrize('end', [1.0, 3.1, 8.3])
+def test_a_slider_that_bounces(checks, mech9d, tmp_path, end):
+    """After one impact, and after many: by the height, the restitution, gravity and the end of the stop; the mass does not matter."""
+    table, _, _ = go(mech9d, tmp_path, BOUNCING + COLUMNS + TIGHT, end=end)
+    values, slopes = bounce(end, 1.0, 0.9, 9.81)
+    # the file has the acceleration -g; a stop further up is a lower fall from a place that stays
+    expected = {'h': slopes['h'], 'e': slopes['e'], 'g': (-slopes['g'][0], -slopes['g'][1]), 'low': (1 - slopes['h'][0], -slopes['h'][1]),
+                'm': (0, 0)}
+    for column, value, by in zip(('q1', 'dq1'), values, range(2)):
+        checks.near(table[column][-1], value, 1e-11, column, scale=max(1.0, abs(value)))
+        for name, slope in expected.items():
+            # tolerance: rates change by the errors of the times of many impacts
+            checks.near(table[f'd({column})/d({name})'][-1], slope[by], 1e-9, f'{column} by {name}', scale=max(1.0, abs(slope[by])))
+
+
+def test_rest_on_a_stop(checks, mech9d, tmp_path):
+    """After endless impacts the slider is where the stop is; a load that lifts it lets it go again."""
+    table, report, _ = go(mech9d, tmp_path, BOUNCING + COLUMNS, end=9.0)
+    checks.equal(kinds(report)[-1], ('close', 1), 'it rests')
+    checks.near([table[f'd({column})/d({name})'][-1] for name in ('h', 'e', 'g', 'low', 'm') for column in ('q1', 'dq1')],
+                [0, 0, 0, 0, 0, 0, 1, 0, 0, 0], 1e-15, 'its place follows the stop alone')
+    lifted = BOUNCING.replace('restitution=0.9', 'restitution=0.1') + "&load kind='coordinate', coordinate=1, force=30, law='harmonic', " \
+        "amplitude=1, angular_frequency=0.6 /\n&parameter name='F', sets='load(1).force' /\n"
+    report = against_differences(checks, mech9d, tmp_path, lifted, ('q1', 'dq1'), 2.0, 8)
+    checks.true(('close', 1) in kinds(report) and ('open', 1) in kinds(report), 'it rests and goes on')
+
+
+@pytest.mark.parametrize('text, columns, end, found', ids=['impacts', 'rest', 'two free', 'one driven', 'carriage'], argvalues=[
+    (FOUR_BAR, ('q1', 'dq1', 'q4', 'dq4'), 0.7, ('impact', 1)),
+    (FOUR_BAR.replace('restitution=0.7', 'restitution=0.3'), ('q1', 'dq1', 'q4', 'dq4', 'ddq1'), 1.0, ('close', 1)),
+    (FIVE_BAR + FREE_CRANK, ('q1', 'q2', 'q5', 'dq1', 'dq2', 'dq5'), 0.5, ('impact', 1)),
+    (FIVE_BAR + DRIVEN_CRANK, ('q2', 'q5', 'dq2', 'dq5'), 0.5, ('impact', 1)),
+    (CARRIAGE, ('q2', 'dq2', 'q3', 'dq3', 'F1', 'R2.fx', 'R2.fy', 'R2.mz', 'E.kinetic', 'E.total'), 0.9, ('impact', 2))])
+def test_several_coordinates(checks, mech9d, tmp_path, text, columns, end, found):
+    """A stop of a dependent coordinate in a closed chain, with impacts and at rest; a carriage that a drive moves, whose slide is hit while
+    it rests on its stop."""
+    output = COLUMNS.replace(' /', ', energies=.true., drive_forces=.true., reactions=.true. /') if 'F1' in columns else COLUMNS
+    report = against_differences(checks, mech9d, tmp_path, text, columns, end, 6, output)
+    checks.true(found in kinds(report), 'the event of the case', kinds(report))
+
+
+def exponents(program, folder, text, count, end, settings):
+    go(program, folder, text + f'&exponents {settings} /\n', '--exponents', str(count), end=end)
+    return json.loads((folder / 'event.json').read_text())
+
+
+def test_exponents_through_impacts(checks, mech9d, tmp_path):
+    """One impact in each period of the force multiplies areas by e^2 exp(-0.2 T)."""
+    _, report, _ = go(mech9d, tmp_path, OSCILLATOR + TIGHT, end=2000.0)
+    times = np.array([event['time'] for event in report['events']])
+    period = 2 * np.pi / 2.5
+    checks.near(np.diff(times[-50:]), period, 1e-8, 'one impact in each period')
+    report = exponents(mech9d, tmp_path, OSCILLATOR + TIGHT, 2, 500 + 600 * period, 'transient=500')
+    # tolerance: the sum is exact over whole periods
+    checks.near(sum(report['exponents']), -0.2 + 2 * log(0.8) / period, 1e-9, 'the sum', scale=1)
+    checks.near(report['exponents'], [-0.1 + log(0.8) / period] * 2, 2e-3, 'both are equal: the multipliers are complex', scale=1)
+
+
+def test_lost_directions(checks, mech9d, tmp_path):
+    """Neighbouring motions become the same where a stop holds a coordinate: exponents of minus infinity; those of another freedom stay."""
+    plain = '\n'.join(line for line in BOUNCING.splitlines() if 'parameter' not in line) + '\n'
+    report = exponents(mech9d, tmp_path, plain, 2, 12.0, 'transient=1')
+    checks.equal(report['exponents'] + report['exponents_error'], [None] * 4, 'both are lost')
+    beside = plain.replace('cq=1', 'cq=1,2') + """&pair coordinate=2, links=1,3, kind='prismatic', axis=1,0,0 /
+&body link=3, mass=1 /
+&load kind='coordinate', coordinate=2, stiffness=4, damping=0.3 /
+&initial coordinate=2, position=0.1 /
+"""
+    report = exponents(mech9d, tmp_path, beside, 4, 400.0, 'transient=10')
+    checks.near(report['exponents'][:2], [-0.15, -0.15], 1 / 390, 'an oscillator beside it', scale=1)
+    checks.equal(report['exponents'][2:], [None] * 2, 'the others are lost')
+
+
+@pytest.mark.parametrize('change, words', [
+    (('&parameter', "&pair coordinate=2, links=1,3, kind='prismatic', axis=0,0,1 /\n&body link=3, mass=1 /\n&stop coordinate=2, low=0 /\n"
+      '&initial coordinate=2, position=1 /\n&parameter'), 'stop 1 is hit together with another one'),
+    (('position=1 ', 'position=0 '), 'the motion begins on stop 1, and parameters move it away or behind'),
+    (('&parameter', "&quantity name='v', of='dq1', take='rms' /\n&output gradients=.true. /\n&parameter"),
+     'columns may jump that quantities follow between outputs')])
+def test_refusals(checks, mech9d, tmp_path, change, words):
+    """Two impacts at once, a start on a stop, quantities that follow a column through an impact."""
+    text = BOUNCING.replace(*change, 1)
+    if 'coordinate=2' in text:
+        text = text.replace('cq=1', 'cq=1,2')
+    _, _, told = go(mech9d, tmp_path, text + ('' if 'gradients' in text else COLUMNS), code=6)
+    checks.true(words in told, words, told)
+
+
+def test_quantities_at_one_time(checks, mech9d, tmp_path):
+    """Quantities at the end have the derivatives of their columns."""
+    text = BOUNCING + "&quantity name='end', of='q1', take='end' /\n&output gradients=.true. /\n" + TIGHT
+    _, report, _ = go(mech9d, tmp_path, text)
+    found = {one['parameter']: one['value'] for one in report['quantities'][0]['gradient']}
+    checks.near(found['h'], bounce(1.0, 1.0, 0.9, 9.81)[1]['h'][0], 1e-10, 'by the height', scale=1)
