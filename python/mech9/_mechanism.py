@@ -136,18 +136,20 @@ class Positions(np.ndarray):
 class Mechanism:
     """A mechanism: groups of a data file in memory.
 
-    Mechanism(title='four-bar') makes an empty one, to which `add` brings groups.
+    Mechanism(title='four-bar') makes an empty one, to which `add` brings groups. It takes all words of &mechanism: length_unit='mm'.
     """
     imported_text: str = ''                    # of import_robot
     import_messages: tuple[str, ...] = ()      # of import_robot
 
-    def __init__(self, title: str | None = None, *, _handle: Handle | None = None):
+    def __init__(self, title: str | None = None, *, _handle: Handle | None = None, **words: Any):
         if _handle is None:
             _handle = Handle()
             call(lib.read_text, b'', ctypes.byref(_handle))
         self._handle = _handle
         if title is not None:
-            self.add('mechanism', title=title)
+            words = {'title': title, **words}
+        if words:
+            self.add('mechanism', **words)
 
     def __del__(self) -> None:
         if getattr(self, '_handle', None):

@@ -33,6 +33,17 @@ def test_from_nothing(mech9, four_bar):
     assert (built(mech9).kinematics().table == four_bar.kinematics().table).all()
 
 
+def test_words_of_a_new_mechanism(mech9):
+    """A crank of 300 mm at 30 degrees: its end is 150 mm up."""
+    m = mech9.Mechanism(title='Crank', length_unit='mm', angle_unit='deg').add('structure', cq=1)
+    m.add('pair', coordinate=1, links=(1, 2), kind='revolute', axis=(0, 0, 1)).add('drive', coordinate=1, kind='polynomial', coefficients=30)
+    r = m.add('point', name='P', link=2, position=(300, 0, 0)).kinematics(end=1, intervals=1)
+    assert abs(r['P.y'][0] - 150) < 1e-12 and r.units['P.y'] == 'mm' and "title = 'Crank'" in m.text()
+    assert "angle_unit = 'deg'" in mech9.Mechanism(angle_unit='deg').text()
+    with pytest.raises(mech9.DataError):
+        mech9.Mechanism(length_unit='km').check()
+
+
 def test_text_makes_the_same_mechanism(mech9, four_bar):
     four_bar['pair(2).point(1)'] = 0.1 + 0.2   # a number that needs all its digits
     again = mech9.read_text(four_bar.text())
