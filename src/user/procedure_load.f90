@@ -24,6 +24,7 @@ module mech9_procedure_load
   contains
     procedure :: mark_links
     procedure :: mark_coordinates
+    procedure :: may_follow_time
     procedure :: apply
     procedure :: potential
     procedure :: numbers
@@ -47,6 +48,13 @@ contains
 
     needed = .true.
   end subroutine mark_coordinates
+
+  !> The procedure may use the time.
+  pure logical function may_follow_time(self)
+    class(procedure_load_type), intent(in) :: self   !< the procedure load
+
+    may_follow_time = .true.
+  end function may_follow_time
 
   !> Call the procedure, which adds its forces. Fails where there is none, or its numbers are of no use.
   subroutine apply(self, state, sum, err)

@@ -2,7 +2,7 @@
 module mech9_harmonic_law
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_law, only: law_type
+  use mech9_law, only: law_type, repetition_type, stands_still, repeats_after
   implicit none
   private
   public :: harmonic_law_type
@@ -16,6 +16,7 @@ module mech9_harmonic_law
   contains
     procedure :: evaluate
     procedure :: greatest_rate
+    procedure :: repetition
     procedure :: constants
     procedure :: vary
     procedure :: antiderivatives
@@ -50,6 +51,17 @@ contains
 
     rate = abs(self%amplitude*self%angular_frequency)
   end function greatest_rate
+
+  !> How the harmonic repeats: after one turn of its angle.
+  pure type(repetition_type) function repetition(self) result(found)
+    class(harmonic_law_type), intent(in) :: self     !< the harmonic law
+    real(wp), parameter :: turn = 8.0_wp*atan(1.0_wp)
+
+    found%kind = stands_still
+    if (.not. abs(self%amplitude*self%angular_frequency) > 0.0_wp) return
+    found%kind = repeats_after
+    found%period = turn/abs(self%angular_frequency)
+  end function repetition
 
   !> The four numbers of the law.
   pure subroutine constants(self, values)

@@ -6,7 +6,23 @@ module mech9_law
   use mech9_text, only: to_text
   implicit none
   private
-  public :: law_type, drive_slot_type, law_slot_type, from_inside, refuse_time
+  public :: law_type, drive_slot_type, law_slot_type, from_inside, refuse_time, repetition_type
+  public :: unknown_repetition, never_repeats, stands_still, moves_steadily, repeats_after
+
+  !> Ways in which a law goes on for ever.
+  integer, parameter :: unknown_repetition = 0   !< nothing is known about it
+  integer, parameter :: never_repeats = 1        !< it never has the same course again
+  integer, parameter :: stands_still = 2         !< its value is constant
+  integer, parameter :: moves_steadily = 3       !< its rate is constant
+  integer, parameter :: repeats_after = 4        !< its course is the same after each period, but for an advance
+
+  !> How a law repeats.
+  type :: repetition_type
+    integer :: kind = unknown_repetition   !< one of the numbers above
+    real(wp) :: period = 0.0_wp            !< least time after which the course is the same; 0 for other kinds [s]
+    real(wp) :: advance = 0.0_wp           !< change of the value within a period [rad, m]
+    real(wp) :: rate = 0.0_wp              !< rate of a steady law [rad/s, m/s]
+  end type repetition_type
 
   !> A given function of time.
   type, abstract :: law_type
@@ -28,6 +44,7 @@ module mech9_law
     procedure :: antiderivatives => no_antiderivatives
     procedure :: vary_antiderivatives => no_varied_antiderivatives
     procedure :: has_value_at
+    procedure :: repetition => repetition_of_unknown
     procedure, non_overridable :: integrals
     procedure, non_overridable :: vary_integrals
     procedure, non_overridable :: wording_at
@@ -193,6 +210,13 @@ contains
 
     has_value_at = .true.
   end function has_value_at
+
+  !> How the law repeats. This procedure, for laws whose formula is not known, does not know it.
+  pure type(repetition_type) function repetition_of_unknown(self) result(found)
+    class(law_type), intent(in) :: self     !< the law
+
+    found%kind = unknown_repetition
+  end function repetition_of_unknown
 
   !> The integral of the law from its first value, or from 0 where it has none, and the integral of this one. They give loads a
   !> potential. This procedure is for laws of drives, which need none.

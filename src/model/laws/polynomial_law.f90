@@ -3,7 +3,7 @@ module mech9_polynomial_law
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data
-  use mech9_law, only: law_type
+  use mech9_law, only: law_type, repetition_type, stands_still, moves_steadily, never_repeats
   implicit none
   private
   public :: polynomial_law_type
@@ -17,6 +17,7 @@ module mech9_polynomial_law
   contains
     procedure :: evaluate
     procedure :: greatest_rate
+    procedure :: repetition
     procedure :: constants
     procedure :: vary
     procedure :: antiderivatives
@@ -59,6 +60,20 @@ contains
     end do
     ddq = 2.0_wp*ddq
   end subroutine sum_terms
+
+  !> How the polynomial repeats: a constant stands still, and one of the first degree moves steadily.
+  pure type(repetition_type) function repetition(self) result(found)
+    class(polynomial_law_type), intent(in) :: self   !< the polynomial law
+    integer :: degree
+
+    do degree = size(self%coefficients) - 1, 1, -1
+      if (abs(self%coefficients(degree + 1)) > 0.0_wp) exit
+    end do
+    found%kind = never_repeats
+    if (degree <= 0) found%kind = stands_still
+    if (degree == 1) found%kind = moves_steadily
+    if (degree == 1) found%rate = self%coefficients(2)
+  end function repetition
 
   !> The coefficients.
   pure subroutine constants(self, values)

@@ -5,7 +5,7 @@
 module mech9_segments_law
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_law, only: law_type, refuse_time
+  use mech9_law, only: law_type, refuse_time, repetition_type, stands_still, repeats_after, never_repeats
   use mech9_cam_curves, only: cam_curve, cam_third, steepest_slope_of
   use mech9_cam_integrals, only: cam_integrals
   implicit none
@@ -24,6 +24,7 @@ module mech9_segments_law
     procedure :: next_joint
     procedure :: joint_rate
     procedure :: check_time
+    procedure :: repetition
     procedure :: constants
     procedure :: vary
     procedure :: antiderivatives
@@ -59,6 +60,20 @@ contains
     dq = rise*ds/span
     ddq = rise*dds/span**2
   end subroutine evaluate
+
+  !> How the law repeats: after its last time, where it begins again.
+  pure type(repetition_type) function repetition(self) result(found)
+    class(segments_law_type), intent(in) :: self   !< the law
+
+    found%kind = never_repeats
+    if (.not. any(abs(self%values - self%values(1)) > 0.0_wp)) then
+      found%kind = stands_still
+    else if (self%repeats) then
+      found%kind = repeats_after
+      found%period = self%times(size(self%times)) - self%times(1)
+      if (self%coordinate > 0) found%advance = self%values(size(self%values)) - self%values(1)
+    end if
+  end function repetition
 
   !> The times and the values.
   pure subroutine constants(self, values)

@@ -3,7 +3,7 @@ module mech9_table_law
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_spline, only: spline_type
-  use mech9_law, only: law_type, refuse_time
+  use mech9_law, only: law_type, refuse_time, repetition_type, stands_still, repeats_after, never_repeats
   implicit none
   private
   public :: table_law_type
@@ -20,6 +20,7 @@ module mech9_table_law
     procedure :: evaluate
     procedure :: greatest_rate
     procedure :: check_time
+    procedure :: repetition
     procedure :: constants
     procedure :: antiderivatives
     procedure :: has_value_at
@@ -113,6 +114,20 @@ contains
     second = second + rounds*(whole_first*(0.5_wp*(rounds - 1.0_wp)*self%period() + into) + whole_second)
     first = first + rounds*whole_first
   end subroutine antiderivatives
+
+  !> How the law repeats: after its last point, where it begins again.
+  pure type(repetition_type) function repetition(self) result(found)
+    class(table_law_type), intent(in) :: self   !< the law
+
+    found%kind = never_repeats
+    if (.not. any(abs(self%spline%y - self%spline%y(1)) > 0.0_wp)) then
+      found%kind = stands_still
+    else if (self%repeats) then
+      found%kind = repeats_after
+      found%period = self%period()
+      if (self%coordinate > 0) found%advance = self%spline%y(size(self%spline%y)) - self%spline%y(1)
+    end if
+  end function repetition
 
   !> A table has no numbers that a parameter could set.
   pure subroutine constants(self, values)

@@ -22,6 +22,7 @@ module mech9_load
     procedure(mark_interface), deferred :: mark_links
     procedure :: mark_coordinates
     procedure :: is_idle
+    procedure :: may_follow_time
     procedure(apply_interface), deferred :: apply
     procedure(potential_interface), deferred :: potential
     procedure :: vary
@@ -80,6 +81,14 @@ contains
 
     is_idle = .false.
   end function is_idle
+
+  !> Whether the forces may depend on the time beside the law by which they are multiplied. This procedure, for kinds whose formula is
+  !> known, answers that they do not.
+  pure logical function may_follow_time(self)
+    class(load_type), intent(in) :: self   !< the load
+
+    may_follow_time = .false.
+  end function may_follow_time
 
   !> Add the derivative of the load's forces by a parameter on which the motion depends. Fails where the load has no value.
   !> This procedure, for kinds whose formula is not known, takes differences over a wide stencil of motions, of which the one
