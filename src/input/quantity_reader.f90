@@ -1,4 +1,4 @@
-!> Quantities of a run, its section and its exponents, as the groups &quantity, &section and &exponents of a checked document request them.
+!> Quantities of a run, its section, its exponents and periodic motions, as groups of a checked document request them.
 module mech9_quantity_reader
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
@@ -9,10 +9,10 @@ module mech9_quantity_reader
   use mech9_diagnostics, only: diagnostics_type
   use mech9_request, only: time_grid_type
   use mech9_quantity, only: quantity_type
-  use mech9_long_term, only: section_type, exponents_type
+  use mech9_long_term, only: section_type, exponents_type, periodic_type
   implicit none
   private
-  public :: read_quantities, read_section, read_exponents
+  public :: read_quantities, read_section, read_exponents, read_periodic
 
 contains
 
@@ -118,4 +118,18 @@ contains
     if (has_name(group, 'time')) exponents%time = get_real(group, 'time')
     exponents%place = diagnostics%place(group%span)
   end subroutine read_exponents
+
+  !> Read the group &periodic.
+  pure subroutine read_periodic(document, periodic, diagnostics)
+    type(document_type), intent(in) :: document           !< the data file as groups and items
+    type(periodic_type), intent(out) :: periodic          !< how periodic motions are found
+    type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
+    type(group_type) :: group
+
+    group = group_or_empty(document, 'periodic')
+    if (.not. has_group(document, 'periodic')) return
+    if (has_name(group, 'period')) periodic%period = get_real(group, 'period')
+    periodic%starts = get_integer(group, 'starts')
+    periodic%place = diagnostics%place(group%span)
+  end subroutine read_periodic
 end module mech9_quantity_reader

@@ -18,6 +18,8 @@ module mech9_whole_report
   use mech9_force_record, only: reacting_pairs
   use mech9_run, only: run_type
   use mech9_instant_report, only: add_instant
+  use mech9_periodic, only: periodic_found_type
+  use mech9_periodic_report, only: add_periodic
   use mech9_report_parts, only: begin_report, add_structure, add_uniqueness
   implicit none
   private
@@ -26,13 +28,14 @@ module mech9_whole_report
 contains
 
   !> Compose the whole report of a run, with the structure.
-  subroutine compose_report(json, model, diagnostics, table_path, facts, run)
+  subroutine compose_report(json, model, diagnostics, table_path, facts, run, periodic)
     type(json_type), intent(inout) :: json                !< gets the report
     type(model_type), intent(in) :: model                 !< the model
     type(diagnostics_type), intent(in) :: diagnostics     !< messages and exit code of the run
     character(len=*), intent(in) :: table_path            !< path of the table; '-': standard output; empty: none
     type(facts_type), intent(in) :: facts                 !< about the run
     type(run_type), intent(inout) :: run                  !< the run, as far as it went
+    type(periodic_found_type), intent(in), optional :: periodic   !< the periodic motions, of which the run records one
     type(driven_simulation_type), pointer :: driven
     type(free_simulation_type), pointer :: free
 
@@ -42,6 +45,7 @@ contains
     free => run%motion%free()
     if (associated(free)) call add_free(json, run%motion, free)
     if (.not. diagnostics%failed()) call add_instant(json, model, run)
+    if (present(periodic)) call add_periodic(json, model%mechanism, periodic)
     call report_quantities(run%source%quantities, json)
     if (allocated(run%source%section)) then
       call json%begin_object('section')

@@ -10,6 +10,7 @@ module mech9_run_task
   use mech9_requested, only: requested_type
   use mech9_model_motion, only: model_motion_type
   use mech9_run, only: run_type
+  use mech9_periodic, only: periodic_found_type
   use mech9_row_source, only: row_source_type
   use mech9_force_record, only: reacting_pairs
   use mech9_film, only: film_type
@@ -43,7 +44,7 @@ module mech9_run_task
 contains
 
   !> Carry out a run and report it.
-  subroutine carry_out(options, pictures, model, report, run, diagnostics, reported, kept)
+  subroutine carry_out(options, pictures, model, report, run, diagnostics, reported, kept, periodic)
     type(command_line_type), intent(in) :: options                    !< the command line
     type(picture_requests_type), intent(in) :: pictures               !< the pictures of the mechanism that are requested
     type(model_type), intent(inout), target :: model                  !< of the simulation; gets the tolerances for an accuracy
@@ -52,6 +53,7 @@ contains
     type(diagnostics_type), intent(inout) :: diagnostics              !< gets the errors
     logical, intent(out) :: reported                                  !< the run has written the report
     type(kept_rows_type), intent(inout), optional :: kept             !< gets the rows as well, for a look at them after the run
+    type(periodic_found_type), intent(in), optional :: periodic       !< periodic motions, of which the run records one, for the report
     type(results_type), target :: results
     type(facts_type) :: facts
     type(json_type) :: json
@@ -87,7 +89,7 @@ contains
       if (present(kept)) kept%events = with_impulses_in_units(motion%simulation%events, model%mechanism)
       call end_run(options, pictures, model, source, results, diagnostics)
       if (.not. reported) return
-      call compose_report(json, model, diagnostics, results%table_path, facts, run)
+      call compose_report(json, model, diagnostics, results%table_path, facts, run, periodic)
       call json%save(options%argument('report'), err)
       if (allocated(err)) call diagnostics%add_error(err)
     end associate

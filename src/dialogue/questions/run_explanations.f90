@@ -161,7 +161,12 @@ module mech9_run_explanations
                   'Before this time, counted from the start of the motion, nothing is summed. The motion comes to its '// &
                   'long-term behaviour meanwhile.', '100'), &
     explanation_type('exponents', 'time', '', &
-                  'The exponents are means over this time. Errors fall with its square root.', '1000')]
+                  'The exponents are means over this time. Errors fall with its square root.', '1000'), &
+    explanation_type('periodic', 'period', '', &
+                  'The motion is the same after this time. It is a multiple of the period of drives, loads and motors. Where '// &
+                  'none of them follows the time, give a guess.', '9.42477796076938'), &
+    explanation_type('periodic', 'starts', '', &
+                  'The search begins at the start of this file. From random starts it may find other periodic motions.', '20')]
 
   type(explanation_type), parameter :: run_texts(*) = [ &
     explanation_type('time', 'start', '', &

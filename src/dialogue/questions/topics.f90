@@ -9,8 +9,8 @@ module mech9_topics
   !> One topic.
   type :: topic_type
     character(len=24) :: title
-    character(len=24) :: groups       !< names of its groups; empty: all groups without another topic
-    character(len=370) :: opening     !< text at the beginning of the topic
+    character(len=40) :: groups       !< names of its groups; empty: all groups without another topic
+    character(len=420) :: opening     !< text at the beginning of the topic
   end type topic_type
 
   type(topic_type), parameter :: topics(*) = [ &
@@ -57,9 +57,9 @@ module mech9_topics
     topic_type('Objectives', 'objective limit optimum', 'An objective is a path, a function, poses or a quantity that the '// &
                'mechanism should have. A limit is a condition that it must meet. '// &
                'What was begun by mistake is left out by remove.'), &
-    topic_type('Long-term motion', 'section exponents', 'A section has the points at which the motion passes a value, or those '// &
-               'after each period. Exponents tell how fast neighbouring motions part (option --exponents). '// &
-               'What was begun by mistake is left out by remove.'), &
+    topic_type('Long-term motion', 'section exponents periodic', 'A section has the points at which the motion passes a value, '// &
+               'or those after each period. Exponents tell how fast neighbouring motions part (option --exponents). Periodic '// &
+               'motions, stable or not, are found by --periodic. What was begun by mistake is left out by remove.'), &
     topic_type('Further data', '', '')]
 
 contains
@@ -103,7 +103,7 @@ contains
 
     is_on_request = any(group_table(group_row)%name == ['link     ', 'stop     ', 'friction ', 'contact  ', 'parameter', &
                                                         'quantity ', 'study    ', 'objective', 'limit    ', 'optimum  ', &
-                                                        'section  ', 'exponents'])
+                                                        'section  ', 'exponents', 'periodic '])
   end function is_on_request
 
   !> Whether the user begins the groups of a name, and can leave them out. There can be any number of most of them, and one of

@@ -60,6 +60,7 @@ module mech9_grammar
                    'the search of --optimize for the values of the parameters that meet the objectives best'), &
     group_row_type('section', .false., '', both, 'points of the motion at values of a coordinate or a column, or after periods'), &
     group_row_type('exponents', .false., '', dynamics, 'the times over which the option --exponents takes Lyapunov exponents'), &
+    group_row_type('periodic', .false., '', dynamics, 'the search of the option --periodic for periodic motions'), &
     group_row_type('time', .false., '', both, &
                    'the times of the results: start + (end - start) i/intervals, i = 0 .. intervals'), &
     group_row_type('solver', .false., '', dynamics, 'method and tolerances of the integration'), &

@@ -150,5 +150,9 @@ module mech9_study_grammar
     item_row_type('exponents', 'transient', 'real', 1, 1, 's', optional, '0', '>=0', '', '', &
                   'time from the start of the motion before which nothing is summed', '100'), &
     item_row_type('exponents', 'time', 'real', 1, 1, 's', optional, '(up to the end)', '>0', '', '', &
-                  'time over which the exponents are means', '1000')]
+                  'time over which the exponents are means', '1000'), &
+    item_row_type('periodic', 'period', 'real', 1, 1, 's', optional, '(that of the drives)', '>0', '', '', &
+                  'period: a multiple of that of drives, loads and motors; where none follows time, a guess', '9.42477796076938'), &
+    item_row_type('periodic', 'starts', 'integer', 1, 1, '', optional, '0', '>=0', '', '', &
+                  'random starts beside that of the file, from which other periodic motions are looked for', '20')]
 end module mech9_study_grammar

@@ -1,10 +1,10 @@
-!> Requests that concern the long-term motion: a section, and Lyapunov exponents.
+!> Requests that concern the long-term motion: a section, Lyapunov exponents, and periodic motions.
 module mech9_long_term
   use mech9_kinds, only: wp
   use mech9_error, only: place_type
   implicit none
   private
-  public :: section_type, exponents_type
+  public :: section_type, exponents_type, periodic_type
 
   !> The points of a motion at which a coordinate or a column of the results has a value, or at the ends of periods.
   type :: section_type
@@ -27,4 +27,11 @@ module mech9_long_term
     real(wp) :: time = 0.0_wp                  !< time over which is summed; 0: up to the end of the results [s]
     type(place_type) :: place                  !< of its group in the data file
   end type exponents_type
+
+  !> How periodic motions are found.
+  type :: periodic_type
+    real(wp) :: period = 0.0_wp                !< of a driven motion, or a guess for that of a free one; 0: that of the drives [s]
+    integer :: starts = 0                      !< random starts beside that of the data file
+    type(place_type) :: place                  !< of its group in the data file
+  end type periodic_type
 end module mech9_long_term

@@ -13,8 +13,8 @@ module mech9_option_conflicts
   character(len=*), parameter :: of_rest(*) = [character(len=11) :: 'equilibrium', 'modes', 'linear']
   !> Options that a conversation does not take.
   character(len=*), parameter :: of_files(*) = [character(len=11) :: 'check', 'structure', 'plan', 'branches', 'range', 'cam', &
-                                                'equilibrium', 'modes', 'linear', 'exponents', 'study', 'optimize', 'dakota', &
-                                                'set']
+                                                'equilibrium', 'modes', 'linear', 'exponents', 'periodic', 'study', &
+                                                'optimize', 'dakota', 'set']
 
 contains
 
@@ -91,6 +91,8 @@ contains
       call judge_optimum(given, err)
     else if (has('exponents')) then
       call judge_exponents(given, err)
+    else if (has('periodic') .and. answer_of(given) /= '') then
+      call raise(err, exit_usage, '--'//answer_of(given)//' and --periodic are two tasks; give one of them')
     else if (rest_of(given) /= '') then
       call judge_rest(given, err)
     else if (has('animate') .and. answer_of(given) /= '') then
@@ -152,7 +154,7 @@ contains
     type(error_type), allocatable, intent(out) :: err  !< allocated if there is one
     character(len=:), allocatable :: other
 
-    other = first_of([answers, [character(len=11) :: 'sketch', 'animate', 'view', 'verbose']], given)
+    other = first_of([answers, [character(len=11) :: 'sketch', 'animate', 'view', 'verbose', 'periodic']], given)
     if (other /= '') call raise(err, exit_usage, '--study makes many runs and writes a table with a row for each; leave --'// &
                                 other//' out')
   end subroutine judge_study
@@ -163,7 +165,7 @@ contains
     type(error_type), allocatable, intent(out) :: err  !< allocated if there is one
     character(len=:), allocatable :: other
 
-    other = first_of([answers, [character(len=11) :: 'verbose']], given)
+    other = first_of([answers, [character(len=11) :: 'verbose', 'periodic']], given)
     if (other /= '') call raise(err, exit_usage, '--optimize searches for a design and writes a table with a row for each one '// &
                                 'that it finds; leave --'//other//' out, and give it to a run of the design')
   end subroutine judge_optimum

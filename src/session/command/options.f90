@@ -46,6 +46,8 @@ module mech9_options
                 'write the linearised equations of motion there as matrices'), &
     option_type('exponents', needed_argument, 'K', whole_number, .false., dynamics, &
                 'find the K largest Lyapunov exponents of the motion'), &
+    option_type('periodic', no_argument, '', any_text, .false., dynamics, &
+                'find a periodic motion, stable or not, and record one period of it'), &
     option_type('range', no_argument, '', any_text, .false., kinematics, &
                 'print how far each independent coordinate can go from the start'), &
     option_type('cam', needed_argument, '[N:]FILE', any_text, .true., kinematics, &

@@ -1,0 +1,241 @@
+!> The integral of the divergence of a flow along its motion: the logarithm of what a small volume of states grows by.
+!>
+!> The divergence is the trace of the derivatives of accelerations by rates, and of those of motors' states by themselves. It is found from
+!> directions along single numbers of the state, apart from the directions that are integrated, so that the determinant of these can be
+!> held against it (Liouville's formula). Steps are integrated by Gauss's formula. Where independent coordinates change, and at
+!> events, the volume changes by the ratio of determinants of the integrated directions.
+module mech9_orbit_divergence
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_lapack, only: dgetrf
+  use mech9_free_simulation, only: free_simulation_type
+  implicit none
+  private
+  public :: orbit_divergence_type
+
+  !> Places and weights of Gauss's formula with four points in the interval from 0 to 1.
+  real(wp), parameter :: places(4) = [0.06943184420297371239_wp, 0.33000947820757186760_wp, 0.66999052179242813240_wp, &
+                                      0.93056815579702628761_wp]
+  real(wp), parameter :: weights(4) = [0.17392742256872692869_wp, 0.32607257743127307131_wp, 0.32607257743127307131_wp, &
+                                       0.17392742256872692869_wp]
+
+  !> Integrals along a motion.
+  type :: orbit_divergence_type
+    logical :: is_known = .false.                    !< the integral was found up to the end
+    real(wp) :: log_volume = 0.0_wp                  !< the integral
+    real(wp), allocatable :: largest_move(:)         !< (M) largest distance of each coordinate from its start [rad, m]
+    real(wp), allocatable :: means(:, :)             !< (3,M) means that say which motion it is: of cosine and sine of angles, or of lengths
+                                                     !< and their squares; then of squared rates times the squared time, all in units
+    real(wp), allocatable, private :: first(:)       !< (M) coordinates at the start [rad, m]
+    integer, allocatable, private :: motors(:)       !< those with a state
+    integer, allocatable, private :: free(:)         !< free coordinates of the last step
+    real(wp), allocatable, private :: changes(:, :, :)   !< (directions,0:1,M) of all coordinates at the end of the last step
+    real(wp), allocatable, private :: of_motors(:, :)    !< (directions,motors) of the motors there
+  contains
+    procedure :: follow
+  end type orbit_divergence_type
+
+contains
+
+  !> Follow a motion from its start to its end.
+  subroutine follow(self, simulation, motors, err)
+    class(orbit_divergence_type), intent(inout) :: self         !< gets the integral
+    type(free_simulation_type), intent(inout) :: simulation     !< the motion, started, with as many directions as the state has numbers
+    integer, intent(in) :: motors(:)                            !< numbers of the motors with a state
+    type(error_type), allocatable, intent(out) :: err           !< allocated if the motion failed
+    real(wp) :: from, to, end
+    logical :: at_joint
+    integer :: plans
+
+    self%is_known = .true.
+    self%log_volume = 0.0_wp
+    self%motors = motors
+    self%first = simulation%motion%system%state%q
+    self%largest_move = 0.0_wp*self%first
+    self%free = simulation%motion%system%plan%free
+    allocate (self%means(3, size(self%first)), source=0.0_wp)
+    end = simulation%end
+    to = simulation%motion%t
+    plans = simulation%plans()
+    call keep(self, simulation, err)
+    do while (abs(end - to) > 0.0_wp .and. .not. allocated(err))
+      call simulation%stride(end, from, to, at_joint, err)
+      if (allocated(err)) return
+      if (simulation%plans() /= plans) call change_coordinates(self, simulation)
+      plans = simulation%plans()
+      if (self%is_known) call integrate(self, simulation, from, to, err)
+      if (.not. allocated(err)) call simulation%stand_at_step(err)
+      if (.not. allocated(err)) call keep(self, simulation, err)
+      if (at_joint .and. .not. allocated(err)) call pass(self, simulation, err)
+      plans = simulation%plans()
+    end do
+    if (allocated(err)) return
+    call simulation%advance(end, err)
+    if (allocated(err)) return
+    associate (time => simulation%model%request%time)
+      self%means = self%means/(time%end - time%start)
+      self%means(3, :) = self%means(3, :)*(time%end - time%start)**2
+    end associate
+    ! both ends in the coordinates of the start
+    if (.not. self%is_known) return
+    associate (at_first => simulation%model%problem%partition)
+      self%log_volume = self%log_volume - log_determinant(self, self%free) &
+                        + log_determinant(self, simulation_free(at_first%kind))
+    end associate
+  end subroutine follow
+
+  !> The numbers of the coordinates that are free.
+  pure function simulation_free(kinds) result(free)
+    use mech9_partition, only: free_coordinate
+    integer, intent(in) :: kinds(:)       !< (M) of coordinates
+    integer, allocatable :: free(:)
+    integer :: k
+
+    free = pack([(k, k=1, size(kinds))], kinds == free_coordinate)
+  end function simulation_free
+
+  !> Keep the directions of all coordinates at the end of a step, and the distance from the start.
+  subroutine keep(self, simulation, err)
+    class(orbit_divergence_type), intent(inout) :: self         !< gets them
+    type(free_simulation_type), intent(inout) :: simulation     !< the motion, at the end of a step
+    type(error_type), allocatable, intent(out) :: err           !< allocated if it failed
+
+    call simulation%motion%system%show_sensitivity(err)
+    if (allocated(err)) return
+    associate (system => simulation%motion%system)
+      self%changes = system%sensitivity%motion%q
+      self%of_motors = system%sensitivity%motors(:, self%motors, 0)
+      self%largest_move = max(self%largest_move, abs(system%state%q - self%first))
+      self%free = system%plan%free
+    end associate
+  end subroutine keep
+
+  !> Let the volume stand in the coordinates in which the step was made that begins where the last one ended.
+  subroutine change_coordinates(self, simulation)
+    class(orbit_divergence_type), intent(inout) :: self         !< with the directions at the end of the step before
+    type(free_simulation_type), intent(in) :: simulation        !< the motion, at the end of a step in other coordinates
+    integer, allocatable :: now(:)
+
+    now = simulation%motion%system%plan%free
+    if (size(now) == size(self%free)) then
+      self%log_volume = self%log_volume + log_determinant(self, now) - log_determinant(self, self%free)
+    else
+      self%is_known = .false.
+    end if
+    self%free = now
+  end subroutine change_coordinates
+
+  !> Pass what ended the step: the volume changes as the directions do.
+  subroutine pass(self, simulation, err)
+    class(orbit_divergence_type), intent(inout) :: self         !< with the directions before the joint
+    type(free_simulation_type), intent(inout) :: simulation     !< the motion, at the end of a step that ends at a joint
+    type(error_type), allocatable, intent(out) :: err           !< allocated if it failed
+    real(wp) :: before
+
+    before = log_determinant(self, self%free)
+    call simulation%leave_joint(err)
+    if (.not. allocated(err)) call keep(self, simulation, err)
+    if (.not. allocated(err)) self%log_volume = self%log_volume + log_determinant(self, self%free) - before
+  end subroutine pass
+
+  !> The logarithm of the volume of the directions in some coordinates, their rates, and the motors' states.
+  real(wp) function log_determinant(self, free) result(log_volume)
+    class(orbit_divergence_type), intent(in) :: self   !< with the directions
+    integer, intent(in) :: free(:)                     !< numbers of the coordinates
+    real(wp) :: a(2*size(free) + size(self%motors), 2*size(free) + size(self%motors))
+    integer :: pivots(size(a, 1)), i, n, info
+
+    n = size(free)
+    log_volume = 0.0_wp
+    if (size(self%changes, 1) < size(a, 1)) return
+    do i = 1, size(a, 1)
+      a(:n, i) = self%changes(i, 0, free)
+      a(n + 1:2*n, i) = self%changes(i, 1, free)
+      a(2*n + 1:, i) = self%of_motors(i, :)
+    end do
+    call dgetrf(size(a, 1), size(a, 1), a, size(a, 1), pivots, info)
+    do i = 1, size(a, 1)
+      log_volume = log_volume + log(max(abs(a(i, i)), tiny(1.0_wp)))
+    end do
+  end function log_determinant
+
+  !> Add the integral over the last step.
+  subroutine integrate(self, simulation, from, to, err)
+    class(orbit_divergence_type), intent(inout) :: self         !< gets it
+    type(free_simulation_type), intent(inout) :: simulation     !< the motion, at the end of the step
+    real(wp), intent(in) :: from                                !< start of the step [s]
+    real(wp), intent(in) :: to                                  !< its end [s]
+    type(error_type), allocatable, intent(out) :: err           !< allocated if it failed
+    real(wp) :: trace
+    integer :: i
+
+    do i = 1, size(places)
+      call simulation%look_at(from + places(i)*(to - from), err)
+      if (allocated(err)) return
+      if (abs(simulation%motion%t - to) > 0.0_wp) then
+        ! the step is made anew
+        self%is_known = .false.
+        return
+      end if
+      self%largest_move = max(self%largest_move, abs(simulation%motion%system%state%q - self%first))
+      call add_means(simulation, weights(i)*(to - from), self%means)
+      call find_trace(self, simulation, trace, err)
+      if (allocated(err)) return
+      self%log_volume = self%log_volume + weights(i)*(to - from)*trace
+    end do
+  end subroutine integrate
+
+  !> Add a position to the means.
+  subroutine add_means(simulation, weight, means)
+    type(free_simulation_type), intent(in) :: simulation   !< the motion, which stands within its step
+    real(wp), intent(in) :: weight                         !< of the position [s]
+    real(wp), intent(inout) :: means(:, :)                 !< (3,M) gets it
+    integer :: k
+
+    associate (state => simulation%motion%system%state, plan => simulation%motion%system%plan)
+      do k = 1, size(means, 2)
+        associate (q => state%q(k)/plan%unit_of(k))
+          if (simulation%model%mechanism%pairs(k)%pair%angular) then
+            means(1:2, k) = means(1:2, k) + weight*[cos(q), sin(q)]
+          else
+            means(1:2, k) = means(1:2, k) + weight*[q, q**2]
+          end if
+        end associate
+        means(3, k) = means(3, k) + weight*(state%dq(k)/plan%unit_of(k))**2
+      end do
+    end associate
+  end subroutine add_means
+
+  !> The divergence at the present motion. The integrated directions come back with the next step.
+  subroutine find_trace(self, simulation, trace, err)
+    class(orbit_divergence_type), intent(in) :: self            !< with the motors
+    type(free_simulation_type), intent(inout) :: simulation     !< the motion, which stands within its step
+    real(wp), intent(out) :: trace                              !< the divergence [1/s]
+    type(error_type), allocatable, intent(out) :: err           !< allocated if it failed
+    integer :: i, n
+
+    trace = 0.0_wp
+    associate (system => simulation%motion%system)
+      n = size(system%plan%free)
+      associate (sensitivity => system%sensitivity)
+        sensitivity%values = 0.0_wp
+        sensitivity%motors = 0.0_wp
+        do i = 1, n
+          sensitivity%values(i, i, 0) = system%plan%unit_of(system%plan%free(i))
+          sensitivity%values(n + i, i, 1) = system%plan%unit_of(system%plan%free(i))
+        end do
+        do i = 1, size(self%motors)
+          sensitivity%motors(2*n + i, self%motors(i), 0) = 1.0_wp
+        end do
+        call sensitivity%find_accelerations(simulation%model, system%state, system%work, err)
+        if (allocated(err)) return
+        do i = 1, n
+          trace = trace + sensitivity%values(n + i, i, 2)/system%plan%unit_of(system%plan%free(i))
+        end do
+        do i = 1, size(self%motors)
+          trace = trace + sensitivity%motors(2*n + i, self%motors(i), 1)
+        end do
+      end associate
+    end associate
+  end subroutine find_trace
+end module mech9_orbit_divergence
