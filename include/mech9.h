@@ -164,6 +164,8 @@ const char *mech9_results_attribute_text(mech9_results *results, int i);
 int mech9_check(const mech9_mechanism *mechanism, mech9_results **results, mech9_error *error);   /* mobility, redundant, text */
 int mech9_kinematics(const mech9_mechanism *mechanism, const volatile int *stop, mech9_results **results, mech9_error *error);
 int mech9_dynamics(const mech9_mechanism *mechanism, const volatile int *stop, mech9_results **results, mech9_error *error);
+/* A run over one period of a periodic motion, which is found first; the report of the results tells period and multipliers. */
+int mech9_periodic(const mech9_mechanism *mechanism, const volatile int *stop, mech9_results **results, mech9_error *error);
 int mech9_equilibrium(const mech9_mechanism *mechanism, int starts, const volatile int *stop, mech9_results **results,
                       mech9_error *error);
 int mech9_modes(const mech9_mechanism *mechanism, mech9_results **results, mech9_error *error);

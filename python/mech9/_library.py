@@ -99,6 +99,7 @@ _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     'animate': (_STATUS, [c_void_p, c_int, c_char_p, c_char_p, c_void_p]),
     'kinematics': (_STATUS, [c_void_p, c_void_p, POINTER(c_void_p)]),
     'dynamics': (_STATUS, [c_void_p, c_void_p, POINTER(c_void_p)]),
+    'periodic': (_STATUS, [c_void_p, c_void_p, POINTER(c_void_p)]),
     'equilibrium': (_STATUS, [c_void_p, c_int, c_void_p, POINTER(c_void_p)]),
     'modes': (_STATUS, [c_void_p, POINTER(c_void_p)]),
     'assemblies': (_STATUS, [c_void_p, c_int, c_void_p, POINTER(c_void_p)]),

@@ -17,7 +17,7 @@ from ._library import Handle, call, call_stoppable, count, lib, warn_of_raised
 from ._library import text as text_of
 from ._pictures import Picture, drawn
 from ._procedures import Procedure, Progress
-from ._results import Exponents, Linear, Results, SecondOrder, StateSpace
+from ._results import Exponents, Linear, Periodic, Results, SecondOrder, StateSpace, multipliers_of
 from ._words import group, run_setting, written
 
 if TYPE_CHECKING:
@@ -312,7 +312,7 @@ class Mechanism:
             raise
         finally:
             if results is not None:
-                results._of_run(run if run is not self else self.copy(), function is lib.dynamics)
+                results._of_run(run if run is not self else self.copy(), function is not lib.kinematics)
         return results
 
     def _with_words(self, words: dict[str, Any]) -> Mechanism:
@@ -373,6 +373,17 @@ class Mechanism:
         found = moved._results(lib.exponents, lambda m, stop, out: (m, count(how_many, 'how_many', 1), stop, out))
         numbers = np.array(list(found.quantities.values()))
         return Exponents(numbers[:how_many], numbers[how_many:], found.t, found.table[:, 1:])
+
+    def periodic(self, **words: Any) -> Periodic:
+        """A periodic motion under forces, stable or not, near the start. It takes the words of &periodic, as period=9.42 and starts=20, and
+        those of &time, &output and &solver; they hold for this call alone."""
+        moved = self.copy()
+        for word, value in words.items():
+            setting = f'periodic.{word}={written(value)}' if word in ('period', 'starts') else run_setting(word, value)
+            call(lib.mechanism_apply, moved._handle, text_of(setting))
+        run = moved._run(lib.periodic, {}, None)
+        found = run.report['periodic']
+        return Periodic(found['period'], multipliers_of(found), found['stability'], run, tuple(run.report.get('periodic_motions', [found])))
 
     def cam(self, number: int = 1) -> Results:
         """The profile of a cam, of which &cam describes the follower: the columns of --cam, and its entry of a report as `report`."""

@@ -127,11 +127,17 @@ class Results(Mapping[str, np.ndarray]):
 
     def sketch(self, view: str | None = None) -> Picture:
         """The assembled start of the run as a drawing."""
-        return self._run_mechanism().sketch(view)
+        return self._drawn_mechanism().sketch(view)
 
     def animate(self, kind: str = 'html', view: str | None = None) -> Picture:
         """The run as a moving picture of a kind: 'html', 'svg', 'gif' or 'mp4'. The run is made again."""
-        return self._run_mechanism().animate(kind=kind, view=view, dynamics=self._with_forces)
+        return self._drawn_mechanism().animate(kind=kind, view=view, dynamics=self._with_forces)
+
+    def _drawn_mechanism(self) -> Mechanism:
+        mechanism = self._run_mechanism()
+        if 'periodic' in self.report:
+            raise UsageError('a periodic motion is drawn by the program: mech9d FILE --periodic --animate film.html', 2)
+        return mechanism
 
     def _run_mechanism(self, refusal: str = 'only the results of kinematics and dynamics have pictures') -> Mechanism:
         if not hasattr(self, '_mechanism'):
@@ -329,6 +335,24 @@ class Exponents:
     errors: np.ndarray
     t: np.ndarray
     history: np.ndarray
+
+
+def multipliers_of(found: dict[str, Any]) -> np.ndarray:
+    """The multipliers of a periodic motion in a report, as complex numbers."""
+    multipliers = np.array([complex(*pair) for pair in found['multipliers']])
+    multipliers.flags.writeable = False
+    return multipliers
+
+
+@dataclass(frozen=True)
+class Periodic:
+    """A periodic motion: its period [s], its multipliers, largest first, and its stability ('stable', 'unstable' or 'neutral'). run: the results
+    over one period. motions: the entries of all motions in the report, that of the run first."""
+    period: float
+    multipliers: np.ndarray
+    stability: str
+    run: Results
+    motions: tuple[dict[str, Any], ...]
 
 
 class Gradients(Mapping[str, Mapping[str, float]]):

@@ -49,7 +49,7 @@ contains
     type(c_ptr), intent(out) :: results           !< rows and quantities, also those before a failure; null if there are none
     type(c_ptr), value, intent(in) :: error       !< handle of errors, or null
 
-    code = make_run(mechanism, kinematics, stop, results, error)
+    code = make_run(mechanism, kinematics, .false., stop, results, error)
   end function run_kinematics
 
   !> Make a run under forces over the outputs of &time.
@@ -59,13 +59,24 @@ contains
     type(c_ptr), intent(out) :: results           !< rows and quantities, also those before a failure; null if there are none
     type(c_ptr), value, intent(in) :: error       !< handle of errors, or null
 
-    code = make_run(mechanism, dynamics, stop, results, error)
+    code = make_run(mechanism, dynamics, .false., stop, results, error)
   end function run_dynamics
 
+  !> Find a periodic motion under forces, and make a run over one period of it.
+  integer(c_int) function run_periodic(mechanism, stop, results, error) bind(c, name='mech9_periodic') result(code)
+    type(c_ptr), value, intent(in) :: mechanism   !< the mechanism
+    type(c_ptr), value, intent(in) :: stop        !< address of a number that stops search and run once it is not 0, or null
+    type(c_ptr), intent(out) :: results           !< rows and quantities of the period; null if there are none
+    type(c_ptr), value, intent(in) :: error       !< handle of errors, or null
+
+    code = make_run(mechanism, dynamics, .true., stop, results, error)
+  end function run_periodic
+
   !> Make a run of a program.
-  integer(c_int) function make_run(mechanism, program, stop, results, error) result(code)
+  integer(c_int) function make_run(mechanism, program, is_periodic, stop, results, error) result(code)
     type(c_ptr), intent(in) :: mechanism   !< the mechanism
     integer, intent(in) :: program         !< kinematics or dynamics
+    logical, intent(in) :: is_periodic     !< of dynamics: a periodic motion is found first
     type(c_ptr), intent(in) :: stop        !< address of a number that stops the run once it is not 0, or null
     type(c_ptr), intent(out) :: results    !< rows and quantities; null if there are none
     type(c_ptr), intent(in) :: error       !< handle of errors, or null
@@ -85,6 +96,8 @@ contains
     if (.not. allocated(err)) then
       if (program == kinematics) then
         call run%begin_kinematics(moved, err, interruption)
+      else if (is_periodic) then
+        call run%begin_periodic(moved, err, interruption)
       else
         call run%begin_dynamics(moved, err, interruption)
       end if

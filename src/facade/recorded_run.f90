@@ -13,6 +13,7 @@ module mech9_recorded_run
   use mech9_facts, only: facts_type
   use mech9_json, only: json_type
   use mech9_run, only: run_type
+  use mech9_periodic, only: periodic_found_type, find_periodic, take_periodic, start_periodic
   use mech9_run_outcome, only: run_outcome_type
   use mech9_run_facts, only: list_run_facts
   use mech9_whole_report, only: compose_report
@@ -41,9 +42,11 @@ module mech9_recorded_run
     integer :: next = 0                                          !< number of the next output, from 0 on
     logical :: has_failed = .false.                              !< the run ended before its last output
     character(len=:), allocatable :: began                       !< time when the run began
+    type(periodic_found_type), allocatable :: periodic           !< periodic motions, of which the run records the first one
   contains
     procedure :: begin_kinematics
     procedure :: begin_dynamics
+    procedure :: begin_periodic
     procedure :: begin_film
     procedure :: draw
     procedure :: outputs
@@ -103,14 +106,26 @@ contains
     if (allocated(self%run%source%film)) call pictures%save(self%model, self%run%source%film, err)
   end subroutine draw
 
+  !> Find a periodic motion under forces, and begin a run over one period of it. Fails with exit_data where there can be none, with
+  !> exit_assembly where none was found, and as a run under forces does.
+  subroutine begin_periodic(self, mechanism, err, interruption)
+    class(recorded_run_type), intent(inout) :: self                  !< the run; one that it held is closed
+    type(checked_mechanism_type), intent(in) :: mechanism            !< with free coordinates, bodies and loads
+    type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
+    class(interruption_type), intent(in), optional :: interruption   !< is asked whether search and run shall stop
+
+    call begin(self, mechanism, dynamics, err, interruption, periodic=.true.)
+  end subroutine begin_periodic
+
   !> Begin a run of a program.
-  subroutine begin(self, mechanism, program, err, interruption, pictures)
+  subroutine begin(self, mechanism, program, err, interruption, pictures, periodic)
     class(recorded_run_type), intent(inout) :: self                  !< the run; one that it held is closed
     type(checked_mechanism_type), intent(in) :: mechanism            !< the mechanism
     integer, intent(in) :: program                                   !< kinematics or dynamics
     type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
     class(interruption_type), intent(in), optional :: interruption   !< is asked whether the run shall stop
     logical, intent(in), optional :: pictures                        !< the run is drawn; not unless given
+    logical, intent(in), optional :: periodic                        !< a periodic motion is found first; not unless given
 
     call self%close()
     call set_present_time(self%began)
@@ -120,7 +135,13 @@ contains
     call mechanism%take_request(program, self%model, err)
     if (.not. allocated(err)) then
       if (self%model%request%output%with_derivatives()) call mechanism%take_variable(program, self%variable)
-      call self%run%motion%assemble(self%model, err)
+      if (present(periodic)) allocate (self%periodic)
+      if (allocated(self%periodic)) call find_periodic(self%model, self%periodic, err, interruption)
+      if (allocated(self%periodic) .and. .not. allocated(err)) call take_periodic(self%periodic%motions(1), self%model)
+      if (.not. allocated(err)) call self%run%motion%assemble(self%model, err)
+      if (allocated(self%periodic) .and. .not. allocated(err)) &
+        call start_periodic(self%periodic%motions(1), self%model, self%run%motion, err)
+      if (allocated(err)) call explain(err)
     end if
     if (.not. allocated(err)) call self%run%prepare(self%model, err, self%variable, pictures)
     if (.not. allocated(err)) call self%run%source%begin_section(err)
@@ -316,7 +337,7 @@ contains
     if (.not. associated(self%run)) return
     call judge_forces(self)
     call list_run_facts(self%run%motion, self%outcome, facts)
-    call compose_report(json, self%model, self%diagnostics, '', facts, self%run)
+    call compose_report(json, self%model, self%diagnostics, '', facts, self%run, self%periodic)
     call json%take_text(text)
   end subroutine report
 
@@ -360,6 +381,7 @@ contains
       deallocate (self%run)
     end if
     if (associated(self%variable)) deallocate (self%variable)
+    if (allocated(self%periodic)) deallocate (self%periodic)
     if (associated(self%model)) deallocate (self%model)
     if (associated(self%interruption)) deallocate (self%interruption)
     self%next = 0

@@ -1,4 +1,4 @@
-"""Sections and Lyapunov exponents in Python, against closed forms."""
+"""Sections, Lyapunov exponents and periodic motions in Python, against closed forms."""
 import numpy as np
 import pytest
 
@@ -44,3 +44,22 @@ def test_exponents(checks, mech9, oscillator):
     checks.near(oscillator.exponents(transient=20, time=5).values, [-1], 1e-6, 'one exponent, over another time', scale=1)
     with pytest.raises(mech9.UsageError):
         oscillator.exponents(3)
+
+
+def test_periodic(checks, mech9, oscillator):
+    """A damped oscillator under a force: the amplitude response; a free one has no period without a guess."""
+    with pytest.raises(mech9.DataError):
+        oscillator.periodic()
+    oscillator.add('load', kind='coordinate', coordinate=1, damping=0.5)
+    oscillator.add('load', kind='coordinate', coordinate=1, force=1.0, law='harmonic', amplitude=1.0, angular_frequency=3.0)
+    found = oscillator.periodic(intervals=30, energies=False)
+    period = 2 * np.pi / 3
+    checks.near(found.period, period, 1e-15, 'the period')
+    exact = np.exp(np.roots([1, 0.5, 4]) * period)
+    checks.near([found.multipliers.real, np.abs(found.multipliers.imag)], [exact.real, np.abs(exact.imag)], 1e-10, 'multipliers', scale=1)
+    response = 1 / (4 - 9 + 1.5j) * np.exp(3j * found.run.t)
+    checks.near(found.run['q1'], response.imag, 1e-10, 'the results of a period', scale=1)
+    checks.equal((found.stability, len(found.run.t), len(found.motions)), ('stable', 31, 1), 'stable, thirty intervals, one motion')
+    checks.equal(len(oscillator.periodic(starts=2, period=2 * period).motions), 1, 'random starts lead to the same motion')
+    with pytest.raises(mech9.DataError):
+        oscillator.periodic(period=1.0)
