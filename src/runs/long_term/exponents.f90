@@ -25,7 +25,7 @@ module mech9_exponents
   use mech9_model_motion, only: model_motion_type
   implicit none
   private
-  public :: exponents_found_type, find_exponents, count_states, set_directions
+  public :: exponents_found_type, find_exponents, count_states, set_directions, cause_at_event
 
   !> Times at which the running means are kept, and blocks of time for standard errors.
   integer, parameter :: kept_times = 200, blocks = 20

@@ -131,11 +131,16 @@ contains
     type(free_simulation_type), intent(inout) :: simulation     !< the motion, at the end of a step that ends at a joint
     type(error_type), allocatable, intent(out) :: err           !< allocated if it failed
     real(wp) :: before
+    integer :: n
 
     before = log_determinant(self, self%free)
+    n = size(self%free)
     call simulation%leave_joint(err)
     if (.not. allocated(err)) call keep(self, simulation, err)
-    if (.not. allocated(err)) self%log_volume = self%log_volume + log_determinant(self, self%free) - before
+    if (allocated(err)) return
+    ! a stop that holds a coordinate leaves no volume
+    if (size(self%free) /= n) self%is_known = .false.
+    if (self%is_known) self%log_volume = self%log_volume + log_determinant(self, self%free) - before
   end subroutine pass
 
   !> The logarithm of the volume of the directions in some coordinates, their rates, and the motors' states.

@@ -5,7 +5,7 @@
 !> motion goes on for some periods, which leads to stable motions.
 module mech9_periodic
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, exit_data, exit_assembly, exit_interrupted
+  use mech9_error, only: error_type, raise, exit_data, exit_assembly, exit_singular, exit_interrupted
   use mech9_text, only: to_text
   use mech9_counted, only: counted
   use mech9_random, only: random_type
@@ -17,6 +17,7 @@ module mech9_periodic
   use mech9_state, only: state_type, copy_state
   use mech9_simulation, only: interruption_type
   use mech9_model_motion, only: model_motion_type
+  use mech9_exponents, only: cause_at_event
   use mech9_law_periods, only: law_period_type, find_law_period, fit_period
   use mech9_period_map, only: period_map_type
   use mech9_periodic_motion, only: periodic_motion_type, find_multipliers, judge_stability, same_motion, unstable
@@ -513,18 +514,19 @@ contains
   subroutine explain_refusal(err)
     type(error_type), allocatable, intent(inout) :: err   !< the failure, if there is one
     real(wp) :: t
-    integer :: number
+    integer :: number, cause
 
     if (.not. allocated(err)) return
     if (.not. allocated(err%failure)) return
     t = err%failure%t
     if (err%failure%kind == failure_event_sensitivity) then
       number = err%failure%number
-      call raise(err, exit_data, 'at t = '//to_text(t, 8)//' s stop '//to_text(number)//' is hit, and periodic motions are not '// &
-                 'known through impacts; make the stop compliant by stiffness=')
+      cause = err%failure%limit
+      call raise(err, exit_singular, 'at t = '//to_text(t, 8)//' s '//cause_at_event(number, cause)//', where '// &
+                 'the derivatives by which periodic motions are found do not exist; change the start a little')
     else if (err%failure%kind == failure_angles_sensitivity) then
-      call raise(err, exit_data, 'at t = '//to_text(t, 8)//' s a ball joint comes near gimbal lock, and periodic motions are '// &
-                 'not known in other angles; turn the axes of the joint by axis= and zero=')
+      call raise(err, exit_singular, 'at t = '//to_text(t, 8)//' s a ball joint comes near gimbal lock, and periodic '// &
+                 'motions are not known in other angles; turn the axes of the joint by axis= and zero=')
     end if
   end subroutine explain_refusal
 end module mech9_periodic
