@@ -62,6 +62,7 @@ module mech9_row_source
     procedure :: row_at
     procedure :: go_through
     procedure :: add_sensitivities
+    procedure :: show_forces
   end type row_source_type
 
 contains
@@ -473,19 +474,34 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(plan_type), pointer :: plan
     type(state_type), pointer :: state
-    real(wp), allocatable :: vectors(:, :)
+    type(film_type), allocatable :: film
     logical :: kept
 
+    ! the film and who shows it forces are two
+    call move_alloc(self%film, film)
     call self%simulation%present(plan, state)
-    associate (mechanism => self%simulation%model%mechanism, film => self%film)
+    associate (mechanism => self%simulation%model%mechanism)
       call film%note_contacts(mechanism, self%simulation%events, state%t)
       kept = film%keeps_next()
       call film%take(mechanism, plan, state, row)
-      if (.not. (kept .and. allocated(film%forces))) return
-      call self%simulation%present_for_forces(plan, state)
-      allocate (vectors(3, size(film%applied)))
-      call self%applied%find(mechanism, plan, state, vectors, err)
-      if (.not. allocated(err)) call film%take_forces(self%forces%reactions%force, self%forces%reactions%moment, vectors)
     end associate
+    if (kept) call self%show_forces(film, err)
+    call move_alloc(film, self%film)
   end subroutine film_row
+
+  !> Show a film the forces of the present position, which is its latest frame, if it keeps forces. Fails where a load fails.
+  subroutine show_forces(self, film, err)
+    class(row_source_type), intent(inout) :: self       !< the row source, with the forces of its latest row
+    type(film_type), intent(inout) :: film              !< the film
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(plan_type), pointer :: plan
+    type(state_type), pointer :: state
+    real(wp), allocatable :: vectors(:, :)
+
+    if (.not. allocated(film%forces)) return
+    call self%simulation%present_for_forces(plan, state)
+    allocate (vectors(3, size(film%applied)))
+    call self%applied%find(self%simulation%model%mechanism, plan, state, vectors, err)
+    if (.not. allocated(err)) call film%take_forces(self%forces%reactions%force, self%forces%reactions%moment, vectors)
+  end subroutine show_forces
 end module mech9_row_source

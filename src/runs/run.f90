@@ -6,7 +6,7 @@ module mech9_run
   use mech9_variable_model, only: variable_model_type
   use mech9_simulation, only: interruption_type
   use mech9_model_motion, only: model_motion_type
-  use mech9_film, only: new_film
+  use mech9_film, only: film_type, new_film
   use mech9_masks, only: numbers_of
   use mech9_applied_forces, only: new_applied_forces
   use mech9_row_source, only: row_source_type, new_row_source
@@ -21,6 +21,7 @@ module mech9_run
   contains
     procedure :: prepare
     procedure :: record_film
+    procedure :: keep_arrows
     procedure :: make
     procedure :: close => close_run
   end type run_type
@@ -53,19 +54,27 @@ contains
   subroutine record_film(self, model)
     class(run_type), intent(inout) :: self    !< the run, prepared for pictures
     type(model_type), intent(in) :: model     !< its model
-    integer :: outputs
+    type(film_type), allocatable :: film
 
-    outputs = model%request%time%intervals + 1
-    associate (source => self%source, independent => model%problem%partition%independent())
-      source%film = new_film(model%mechanism, independent, outputs, source%columns)
-      if (model%request%output%force_arrows) then
-        call new_applied_forces(model%mechanism, source%applied)
-        call source%film%keep_forces(numbers_of(model%request%output%drawn_forces(size(model%mechanism%pairs)) .and. &
-                                                model%mechanism%structure%stands_alone()), source%applied%items)
-      end if
-      call source%film%keep_point_motion(model%request%output%velocity_arrows, model%request%output%acceleration_arrows)
-    end associate
+    film = new_film(model%mechanism, model%problem%partition%independent(), model%request%time%intervals + 1, self%source%columns)
+    call self%keep_arrows(model, film)
+    call move_alloc(film, self%source%film)
   end subroutine record_film
+
+  !> Let a new film keep what its arrows show: forces, and velocities and accelerations of points.
+  subroutine keep_arrows(self, model, film)
+    class(run_type), intent(inout) :: self    !< the run, prepared; its rows can then show the film their forces
+    type(model_type), intent(in) :: model     !< its model, or the same one with other points
+    type(film_type), intent(inout) :: film    !< the film
+
+    associate (output => model%request%output)
+      call film%keep_point_motion(output%velocity_arrows, output%acceleration_arrows)
+      if (.not. output%force_arrows) return
+      call new_applied_forces(model%mechanism, self%source%applied)
+      call film%keep_forces(numbers_of(output%drawn_forces(size(model%mechanism%pairs)) .and. &
+                                       model%mechanism%structure%stands_alone()), self%source%applied%items)
+    end associate
+  end subroutine keep_arrows
 
   !> Go through all outputs, without any files, and finish the quantities.
   subroutine make(self, err, rows, interruption)

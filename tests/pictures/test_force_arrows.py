@@ -103,7 +103,8 @@ class Arrows:
 def page_of(checks, program, folder, text, *options):
     """The text of the page of a run."""
     (folder / 'case.nml').write_text(text, encoding='utf-8')
-    done = run(program, folder / 'case.nml', '--quiet', '--no-write', '--animate', 'film.html', *options, folder=folder)
+    written = [] if '--optimize' in options else ['--no-write']
+    done = run(program, folder / 'case.nml', '--quiet', *written, '--animate', 'film.html', *options, folder=folder)
     checks.equal(done.returncode, 0, done.stderr)
     return text_of(folder / 'film.html')
 
@@ -198,3 +199,16 @@ def test_arrows_of_a_free_motion(checks, mech9d, tmp_path):
     node = film['items'][int(centre.get('data-i')) - 1]['nodes'][0]
     for frame in range(0, len(film['times']), 10):
         checks.true(np.abs(nodes_of(film, frame)[node] - arrows.feet[weight][frame]).max() < 2e-4, f'it begins in the mass centre, {frame}')
+
+
+def test_arrows_of_the_best_design(checks, mech9k, tmp_path):
+    """The film of a search has the arrows of a run of its best design."""
+    text = text_of(example('balanced_crank')).replace('&output ', '&output force_arrows=.true., ')
+    text = re.sub(r'&gravity acceleration *= *[^/]*', '&gravity acceleration=0,-9.81,0 ', text)
+    films = [page_of(checks, mech9k, tmp_path, text, '--optimize', '--out', 'best.nml') if name == 'search' else
+             page_of(checks, mech9k, tmp_path, text_of(tmp_path / 'best.nml')) for name in ('search', 'run')]
+    found, expected = (Arrows(film) for film in films)
+    checks.equal(sorted(found.ways), sorted(expected.ways), 'the same arrows')
+    checks.true('force in pair 1' in found.ways and any(title.startswith('weight') for title in found.ways), 'of forces and weights', found.ways)
+    for title, ways in found.ways.items():
+        checks.true(np.abs(ways - expected.ways[title]).max() < 1e-3 * max(found.told.values()), f'{title}: the same', ways[0])

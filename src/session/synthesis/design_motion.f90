@@ -86,6 +86,7 @@ contains
     type(plan_type), pointer :: plan
     type(state_type), pointer :: state
     real(wp), allocatable :: row(:)
+    logical :: kept
     integer :: i
 
     call self%run%prepare(self%model, err, pictures=.true.)
@@ -95,14 +96,15 @@ contains
     allocate (row(self%run%source%columns%width()), source=0.0_wp)
     film = new_film(shown%mechanism, shown%problem%partition%independent(), shown%request%time%intervals + 1, &
                     self%run%source%columns)
-    associate (output => shown%request%output)
-      call film%keep_point_motion(output%velocity_arrows, output%acceleration_arrows)
-    end associate
+    call self%run%keep_arrows(shown, film)
     do i = 0, shown%request%time%intervals
       call self%run%source%row_at(shown%request%time%time(i), row, err)
       if (allocated(err)) exit
       call self%run%motion%simulation%present(plan, state)
+      kept = film%keeps_next()
       call film%take(shown%mechanism, plan, state, row)
+      if (kept) call self%run%source%show_forces(film, err)
+      if (allocated(err)) exit
     end do
     self%run%source%interruption => null()
     deallocate (interruption)
