@@ -217,6 +217,20 @@ def test_kapitza(checks, mech9d, tmp_path):
     checks.near(root, 44.39079478, 5e-9, 'the boundary', scale=1)
 
 
+def test_all_positions_of_kapitza(checks, mech9d, tmp_path):
+    """At 60 rad/s with damping: top and bottom are stable, and two positions between them are not, as mirror images. The mean over the fast
+    motion has them at cos q = -2 g l/(a W)^2, to the square of a/l."""
+    text = kapitza(60.0) + "&load kind='coordinate', coordinate=2, damping=0.1 /\n&periodic starts=20 /\n"
+    found, _, _ = go(mech9d, tmp_path, text)
+    starts = sorted((motion['start'][1] % (2 * np.pi), motion['stability']) for motion in found['all'])
+    checks.equal([stability for _, stability in starts], ['stable', 'unstable', 'stable', 'unstable'], 'four positions')
+    checks.near([starts[0][0], starts[2][0]], [0, np.pi], 1e-10, 'bottom and top', scale=1)
+    checks.near(starts[1][0] + starts[3][0], 2 * np.pi, 1e-9, 'mirror images', scale=1)
+    checks.near(np.cos(starts[1][0] + 0.1 * np.sin(starts[1][0])), -2 * 9.81 / 36, 0.01, 'about the estimate', scale=1)
+    for motion in found['all']:
+        checks.near(motion['product'], np.exp(-0.1 * motion['period']), 1e-10, 'the product', scale=1)
+
+
 def test_period_doubling(checks, mech9d, tmp_path):
     """The driven pendulum of Baker and Gollub: a multiplier passes -1 at g = 1.066372862455."""
     text = PENDULUM + "&load kind='coordinate', coordinate=1, damping=0.5 /\n&initial coordinate=1, position=0.2 /\n" + TIGHT
@@ -290,6 +304,22 @@ def test_impacts(checks, mech9d, tmp_path):
             impacts = np.log(motion['product'] / np.exp(-0.2 * period)) / np.log(0.8**2)
             checks.near(impacts, round(impacts), 1e-6, 'a whole number of impacts, each of which counts e^2', scale=1)
         checks.true(table['q1'].min() > -1e-9, 'above the stop')
+
+
+def test_rest_on_a_stop(checks, mech9d, tmp_path):
+    """A force lifts a body that falls back and comes to rest: nothing of a deviation is left after a period."""
+    text = ("&structure cq=1 /\n&pair coordinate=1, links=1,2, kind='prismatic', axis=0,1,0 /\n&body link=2, mass=1 /\n"
+            '&gravity acceleration=0,-9.81,0 /\n&initial coordinate=1, position=0.05 /\n&stop coordinate=1, low=0, restitution=0.3 /\n')
+    found, table, said = go(mech9d, tmp_path, text + harmonic(2.5, 12.0).replace(repr(np.pi / 2), '0'))
+    checks.equal((found['multipliers'], found['stability'], found['start']), ([[0, 0], [0, 0]], 'stable', [0]), 'multipliers are zero')
+    checks.true('stop 1 opens' in said and table['q1'].max() > 0.1, 'it is lifted', said)
+
+
+def test_parting_neighbours(checks, mech9d, tmp_path):
+    """A motion whose ends cannot be brought together within round-off is refused, not told."""
+    text = SLIDER + "&load kind='coordinate', coordinate=1, stiffness=-100 /\n" + harmonic(0.5)
+    _, _, said = go(mech9d, tmp_path, text, 5)
+    checks.true('no periodic motion was found' in said, 'a period of 125 growth times', said)
 
 
 def test_periods_of_laws(checks, mech9d, tmp_path):

@@ -152,7 +152,7 @@ contains
 
     n = size(free)
     log_volume = 0.0_wp
-    if (size(self%changes, 1) < size(a, 1)) return
+    if (size(a, 1) == 0 .or. size(self%changes, 1) < size(a, 1)) return
     do i = 1, size(a, 1)
       a(:n, i) = self%changes(i, 0, free)
       a(n + 1:2*n, i) = self%changes(i, 1, free)

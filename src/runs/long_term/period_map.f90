@@ -29,6 +29,9 @@ module mech9_period_map
   private
   public :: period_map_type
 
+  !> Turns beyond this number do not count as such.
+  real(wp), parameter :: most_turns = 1.0e9_wp
+
   !> A model with directions, which set nothing, before its own parameters.
   type, extends(variable_model_type) :: directed_model_type
     type(model_type), pointer :: model => null()                  !< with directions alone; not owned
@@ -48,6 +51,7 @@ module mech9_period_map
     real(wp) :: from = 0.0_wp                     !< time of the start [s]
     integer, allocatable :: free(:)               !< free coordinates at the start
     integer, allocatable :: motors(:)             !< numbers of the motors with a state
+    logical :: has_chains = .false.               !< chains are closed, which limit coordinates
     integer :: states = 0                         !< length of a state
     integer :: parameters = 0                     !< how many parameters have derivatives
     real(wp), allocatable :: unit_of(:)           !< (states) unit of each coordinate and rate; 1 of motors [rad, m, per s]
@@ -108,6 +112,7 @@ contains
     if (allocated(err)) return
     associate (plan => self%motion%plan)
       self%free = plan%free
+      self%has_chains = size(plan%closures) > 0
       self%states = 2*size(plan%free) + size(self%motors)
       allocate (self%unit_of(self%states), source=1.0_wp)
       self%unit_of(:2*size(plan%free)) = [plan%unit_of(plan%free), plan%unit_of(plan%free)]
@@ -396,8 +401,10 @@ contains
       self%at_end = self%state_of(state%q, state%dq, self%motor_states(state))
       self%rate_at_end = rates_of(self, state)
     end associate
-    self%turns = nint((self%q_at_end - self%start%q)/merge(self%period_of, 1.0_wp, self%period_of > 0.0_wp))
-    where (.not. self%period_of > 0.0_wp) self%turns = 0
+    if (allocated(self%turns)) deallocate (self%turns)
+    allocate (self%turns(size(self%q_at_end)), source=0)
+    where (self%period_of > 0.0_wp) &
+      self%turns = nint(max(-most_turns, min(most_turns, (self%q_at_end - self%start%q)/self%period_of)))
     self%events = simulation%events%count
     self%coordinate_changes = size(simulation%coordinate_changes)
   end subroutine take_end

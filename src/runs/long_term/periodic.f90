@@ -34,7 +34,12 @@ module mech9_periodic
   real(wp), parameter :: at_rest = 1.0e-6_wp
   !> Deviations up to so many times the tolerance, and what motions grow by, are errors of steps.
   real(wp), parameter :: of_check = 4.0_wp
-  !> Random starts lie within the range of the motion from the start of the file, times this, and at least so far from it in units.
+  !> Largest difference of both ends, in units of the state.
+  real(wp), parameter :: largest_residual = 1.0e-5_wp
+  !> A motion that moves farther in a period goes away without bounds, in units of the state.
+  real(wp), parameter :: farthest = 1.0e6_wp
+  !> Random starts lie within the range of the motion from the start of the file, times this, and at least so far from it in units; angles
+  !> of open chains anywhere.
   real(wp), parameter :: wider = 1.5_wp, least_range = 0.1_wp
   !> A free motion comes back between these parts of the guess of its period, if at all; so many positions are looked at.
   real(wp), parameter :: nearest_return = 0.6_wp, farthest_return = 1.6_wp
@@ -160,8 +165,10 @@ contains
     call map%evaluate(x, period, err, with_volume=.true.)
     if (allocated(err)) return
     range(:n) = max(least_range*map%unit_of(:n), wider*map%largest_move(map%free))
-    where (map%period_of(map%free) > 0.0_wp) range(:n) = min(range(:n), 0.5_wp*map%period_of(map%free))
     range(n + 1:2*n) = range(:n)*turn/period
+    ! angles that no chain limits may begin anywhere
+    where (map%period_of(map%free) > 0.0_wp .and. (range(:n) > 0.5_wp*map%period_of(map%free) .or. .not. map%has_chains)) &
+      range(:n) = 0.5_wp*map%period_of(map%free)
     range(2*n + 1:) = max(1.0_wp, abs(map%at_end(2*n + 1:)))
   end subroutine find_range
 
@@ -213,7 +220,7 @@ contains
     real(wp), intent(in) :: period                       !< or its guess [s]
     type(periodic_motion_type), intent(out) :: motion    !< the motion that was found
     type(error_type), allocatable, intent(out) :: err    !< allocated if nothing was found
-    type(error_type), allocatable :: failure
+    type(error_type), allocatable :: failure, of_start
     type(periodic_motion_type) :: found
     type(state_type) :: here
     real(wp) :: x(size(first))
@@ -230,16 +237,22 @@ contains
       call copy_state(map%start, here)
       if (.not. allocated(failure)) call search_near(map, laws, x, period, evaluations, found, failure)
       if (allocated(failure)) then
-        if (failure%code == exit_interrupted .or. failure%code /= exit_assembly) exit
-        if (i < size(transients)) deallocate (failure)
+        if (failure%code == exit_interrupted) exit
+        ! the failure near the start of the data file says most
+        if (.not. allocated(of_start)) call move_alloc(failure, of_start)
+        if (of_start%code /= exit_assembly) exit
+        if (allocated(failure)) deallocate (failure)
       else
         motion = found
         has_rest = found%is_trivial .and. found%stability == unstable
         if (.not. has_rest) return
       end if
     end do
-    if (has_rest .and. allocated(failure)) has_rest = failure%code /= exit_interrupted
-    if (.not. has_rest) call move_alloc(failure, err)
+    if (allocated(failure)) then
+      call move_alloc(failure, err)
+    else if (.not. has_rest) then
+      call move_alloc(of_start, err)
+    end if
   end subroutine search
 
   !> Search from a state alone.
@@ -315,6 +328,11 @@ contains
       call map%evaluate(x, period, err)
       if (allocated(err)) return
       evaluations = evaluations + 1
+      if (any(abs(map%residual()) > farthest*map%unit_of)) then
+        call raise(err, exit_assembly, 'no periodic motion was found: the motion goes away without bounds; give another start', &
+                   map%model%request%periodic%place)
+        return
+      end if
       call map%go_on(err)
       if (allocated(err)) return
       x = map%state_at_start()
@@ -359,6 +377,7 @@ contains
     call find_least_period(map, laws, newton, motion%repeats_after, err)
     if (.not. allocated(err)) call check_next_period(map, laws, newton, err)
     if (.not. allocated(err)) call map%evaluate(newton%x, newton%period, err, with_volume=.true.)
+    if (.not. allocated(err)) call check_ends(map, newton, err)
     if (allocated(err)) return
     motion%period = newton%period
     motion%is_trivial = all(map%largest_move <= at_rest*map%unit_of_coordinate)
@@ -461,6 +480,18 @@ contains
                  'period differs; no periodic motion was found', map%model%request%periodic%place)
     end if
   end subroutine check_next_period
+
+  !> Check that both ends agree, and not only as far as neighbouring motions part within the period.
+  subroutine check_ends(map, newton, err)
+    type(period_map_type), intent(in) :: map             !< the map, evaluated
+    type(newton_type), intent(in) :: newton              !< the search, converged
+    type(error_type), allocatable, intent(out) :: err    !< allocated if they do not
+
+    if (newton%size_of_residual(map) <= max(largest_residual, of_check*newton%tolerance)) return
+    call raise(err, exit_assembly, 'no periodic motion was found: near a motion of '//to_text(newton%period, 8)//' s '// &
+               'neighbours part by '//to_text(newton%size_of_matrix, 2)//' within the period, so that its ends cannot be '// &
+               'brought together; give a smaller relative_tolerance in &solver, or another start', map%model%request%periodic%place)
+  end subroutine check_ends
 
   !> Check that dependent coordinates come back, too.
   subroutine check_branch(map, newton, err)
