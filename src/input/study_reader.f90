@@ -6,7 +6,7 @@ module mech9_study_reader
   use mech9_error, only: error_type
   use mech9_number_file, only: number_file_type, read_number_file
   use mech9_document, only: document_type, group_type
-  use mech9_lookup, only: groups_named, has_name, has_unsound, get_integer, get_text, span_of
+  use mech9_lookup, only: groups_named, has_name, has_unsound, get_integer, get_logical, get_text, span_of
   use mech9_diagnostics, only: diagnostics_type, printable
   use mech9_table_file, only: beside
   use mech9_sobol, only: most_sobol_dimensions
@@ -55,6 +55,7 @@ contains
                                ' parameters, and there are '//to_text(size(parameters))//'; latin is for any number')
       end select
       study%sets = study%runs
+      if (has_name(group, 'classes')) study%classes = get_logical(group, 'classes')
       if (has_name(group, 'carry')) study%carry = get_text(group, 'carry')
       if (study%carry == 'both') then
         if (study%sets > most_sets) call diagnostics%add(group%span, 'there are too many runs to make each twice')
@@ -76,7 +77,7 @@ contains
     do i = 1, size(groups)
       associate (group => document%groups(groups(i)))
         name = get_text(group, 'name')
-        if (any(name == [character(len=9) :: 'run', 'exit_code'])) call diagnostics%add(span_of(group, 'name', 1), &
+        if (any(name == [character(len=9) :: 'run', 'exit_code', 'class'])) call diagnostics%add(span_of(group, 'name', 1), &
           'the table of a study has a column '''//trim(name)//''' already; choose another name')
         if (i <= size(parameters)) cycle          ! two parameters of one name are reported already
         do j = 1, size(parameters)

@@ -11,6 +11,8 @@ module mech9_design_run
   use mech9_section_record, only: section_record_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
+  use mech9_text, only: to_text
+  use mech9_result_units, only: unit_of, rate_unit_of
   use mech9_columns, only: columns_type
   use mech9_force_record, only: force_record_type
   use mech9_link_record, only: link_record_type
@@ -25,6 +27,10 @@ module mech9_design_run
     real(wp) :: range(2) = [huge(1.0_wp), -huge(1.0_wp)]   !< least and greatest difference from the value of the section
     real(wp), allocatable :: position(:)        !< (M) coordinates at the end [rad, m]
     real(wp), allocatable :: velocity(:)        !< (M) their rates there [rad/s, m/s]
+    real(wp), allocatable :: states(:, :)       !< (2 M,points) coordinates at the points of the section, and rates times the mean time
+                                                !< between points; without two points those at the end, and their way at these rates
+                                                !< in the time of the run [rad, m]
+    real(wp), allocatable :: unit(:)            !< (2 M) that counts as one of them: 1 rad, or the length of the mechanism [rad, m]
   end type run_ending_type
 
 contains
@@ -93,10 +99,49 @@ contains
     call run%motion%simulation%present(plan, state)
     ending%position = state%q
     ending%velocity = state%dq
+    call keep_states(run, plan, ending)
     if (.not. allocated(run%source%section)) return
     ending%points = run%source%section%points(:, :run%source%section%count)
     ending%range = run%source%section%range
   end subroutine keep_ending
+
+  !> Keep the states by which ends of motions are told apart.
+  subroutine keep_states(run, plan, ending)
+    type(run_type), intent(in) :: run                       !< at its end
+    type(plan_type), intent(in) :: plan                     !< of the mechanism
+    type(run_ending_type), intent(inout) :: ending          !< with the state at the end; gets the states
+    real(wp) :: time
+    integer :: k, m, n
+
+    m = plan%n_coordinates
+    ending%unit = [(plan%unit_of(k), k=1, m), (plan%unit_of(k), k=1, m)]
+    n = 0
+    if (allocated(run%source%section)) n = run%source%section%count
+    associate (model => run%motion%simulation%model)
+      if (n < 2) then
+        time = abs(model%request%time%end - model%request%time%start)
+        ending%states = reshape([ending%position, ending%velocity*time], [2*m, 1])
+        return
+      end if
+      allocate (ending%states(2*m, n))
+      associate (section => run%source%section)
+        time = abs(section%points(column_of('t'), n) - section%points(column_of('t'), 1))/(n - 1)
+        do k = 1, m
+          ending%states(k, :) = section%points(column_of('q'//to_text(k)), :n)*unit_of(model%mechanism, k)
+          ending%states(m + k, :) = section%points(column_of('dq'//to_text(k)), :n)*(rate_unit_of(model%mechanism, k)*time)
+        end do
+      end associate
+    end associate
+  contains
+    !> Number of a column of the section.
+    pure integer function column_of(name) result(column)
+      character(len=*), intent(in) :: name   !< its heading
+
+      do column = 1, size(run%source%section%names) - 1
+        if (run%source%section%names(column) == name) return
+      end do
+    end function column_of
+  end subroutine keep_states
 
   !> Find the columns of the quantities that the runs of a model will have. Fails with exit_data where one is not recorded.
   subroutine find_quantities(model, quantities, err)

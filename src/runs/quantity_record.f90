@@ -43,6 +43,9 @@ contains
     class(quantity_record_type), intent(in) :: self   !< the record
     integer, intent(in) :: i                          !< number of the quantity
 
+    unit_length = 0
+    ! the class of a motion is of no column
+    if (i > size(self%tracked)) return
     associate (unit => self%columns%units(self%tracked(i)%column)%text)
       unit_length = len(unit)
       if (self%tracked(i)%take /= 'integral') return
@@ -249,6 +252,8 @@ contains
     integer, intent(in) :: i                          !< number of the quantity
     character(len=unit_length(self, i)) :: unit
 
+    unit = ''
+    if (i > size(self%tracked)) return
     unit = self%columns%units(self%tracked(i)%column)%text
     if (self%tracked(i)%take == 'integral') unit(max(1, len(unit) - 1):) = trim(merge('s ', ' s', len(unit) == 1))
   end function unit_of

@@ -11,6 +11,8 @@ module mech9_run_maker
   use mech9_simulation, only: interruption_type
   use mech9_columns, only: columns_type
   use mech9_design_run, only: run_design, run_ending_type, columns_of_runs
+  use mech9_end_class, only: find_cycle, find_rest
+  use mech9_pair_axes, only: pair_axes_type, pair_axes, turning
   implicit none
   private
   public :: made_run_type, run_maker_type
@@ -23,6 +25,9 @@ module mech9_run_maker
     real(wp), allocatable :: rows(:, :)             !< (columns,outputs) where they are kept; NaN from a failure on
     real(wp), allocatable :: points(:, :)           !< (columns,points) of the section, where there is one
     real(wp) :: range(2) = [huge(1.0_wp), -huge(1.0_wp)]   !< least and greatest difference from the value of the section
+    real(wp), allocatable :: cycle(:, :)            !< (2 M,points) of the motion to which it goes, where classes are wanted [rad, m]
+    real(wp), allocatable :: unit(:)                !< (2 M) that counts as one of its numbers [rad, m]
+    logical, allocatable :: turns(:)                !< (2 M) an angle of which whole turns do not count
     integer :: exit_code = exit_done                !< with which a single run of these values ends
     type(error_type), allocatable :: failure        !< of a run that failed; not explained yet
   end type made_run_type
@@ -88,9 +93,12 @@ contains
     call self%varied%at(run%values, model, run%failure)
     if (.not. allocated(run%failure)) then
       if (self%study%carries()) call begin_at_ending(self%ending, model)
-      call run_design(model, run%quantities, run%failure, run%rows, interruption, self%ending)
+      associate (quantities => run%quantities(:self%n_quantities - merge(1, 0, self%study%classes)))
+        call run_design(model, quantities, run%failure, run%rows, interruption, self%ending)
+      end associate
     end if
     if (.not. allocated(run%failure)) then
+      if (self%study%classes) call find_end(self%ending, model, run)
       if (allocated(self%ending%points)) call move_alloc(self%ending%points, run%points)
       run%range = self%ending%range
       return
@@ -99,6 +107,26 @@ contains
     run%exit_code = run%failure%code
     run%quantities = ieee_value(1.0_wp, ieee_quiet_nan)
   end subroutine make
+
+  !> Find to what a motion goes.
+  subroutine find_end(ending, model, run)
+    type(run_ending_type), intent(in) :: ending    !< of the run
+    type(model_type), intent(in) :: model          !< its model
+    type(made_run_type), intent(inout) :: run      !< gets the cycle
+    type(pair_axes_type), allocatable :: axes(:)
+    integer :: m
+
+    m = size(ending%position)
+    axes = pair_axes(model%mechanism%pairs)
+    run%unit = ending%unit
+    allocate (run%turns(2*m), source=.false.)
+    run%turns(:m) = axes%kind == turning
+    if (size(ending%states, 2) > 1) then
+      call find_cycle(ending%states, ending%unit, run%turns, run%cycle)
+    else
+      call find_rest(ending%states(:m, 1), ending%states(m + 1:, 1), ending%unit(:m), run%cycle)
+    end if
+  end subroutine find_end
 
   !> Let a model begin in the state in which the last run ended, if there was one.
   subroutine begin_at_ending(ending, model)

@@ -3,6 +3,7 @@ module mech9_study_check
   use mech9_error, only: error_type, raise, exit_usage, exit_data
   use mech9_text, only: to_text
   use mech9_model, only: model_type
+  use mech9_quantity, only: quantity_type
   use mech9_quantity_record, only: quantity_record_type
   use mech9_kinds, only: wp
   use mech9_design_run, only: find_quantities, section_of_runs
@@ -19,7 +20,7 @@ contains
   !> Find the columns of the quantities of a study. Fails with exit_usage where the model has no study, and with exit_data where
   !> its runs cannot record what is requested.
   subroutine check_study(model, quantities, err)
-    type(model_type), intent(in) :: model                   !< the model with the values of the data file
+    type(model_type), intent(inout) :: model                !< the model with the values of the data file; gets the class as a quantity
     type(quantity_record_type), intent(out) :: quantities   !< with their columns
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     class(section_record_type), allocatable :: section
@@ -34,6 +35,8 @@ contains
       else
         call find_quantities(model, quantities, err)
         if (.not. allocated(err)) call section_of_runs(model, section, err)
+        if (.not. allocated(err) .and. model%request%study%classes) &
+          model%request%quantities = [model%request%quantities, quantity_type(name='class', column='', take='class')]
         if (.not. allocated(err) .and. model%request%study%carries()) call check_carrying(model, err)
       end if
     end associate

@@ -15,6 +15,7 @@ module mech9_study_runs
   use mech9_run_maker, only: made_run_type
   use mech9_study_sink, only: study_sink_type
   use mech9_study_sums, only: study_sums_type
+  use mech9_end_class, only: end_classes_type
   use mech9_study_statistics, only: study_statistics_type
   implicit none
   private
@@ -39,6 +40,7 @@ module mech9_study_runs
     integer, private :: written = 0                        !< runs of the part that are written, the first ones
     integer, private :: found = 0                          !< how many of these were made before
     type(made_run_type), allocatable, private :: made(:)   !< runs that wait for their turn, each at its place in a ring
+    type(end_classes_type), private :: classes             !< of the ends of the runs so far, where they are told apart
     logical, allocatable, private :: before(:)             !< such a run was made before, and is still to be read from the file
   contains
     procedure :: begin
@@ -120,6 +122,12 @@ contains
     kept%exit_code = run%exit_code
     if (allocated(kept%points)) deallocate (kept%points)
     if (allocated(run%points)) kept%points = run%points
+    if (allocated(kept%cycle)) deallocate (kept%cycle, kept%unit, kept%turns)
+    if (allocated(run%cycle)) then
+      kept%cycle = run%cycle
+      kept%unit = run%unit
+      kept%turns = run%turns
+    end if
     kept%range = run%range
     if (allocated(kept%failure)) deallocate (kept%failure)
     if (allocated(run%failure)) kept%failure = run%failure
@@ -134,6 +142,11 @@ contains
       i = modulo(self%written + 1, size(self%made))
       if (self%before(i)) call self%sink%read_run(self%written + 1, self%made(i))
       if (self%made(i)%number /= self%first + self%written*self%step) exit
+      associate (made => self%made(i))
+        ! the numbers of classes follow the order of the runs
+        if (allocated(made%cycle)) &
+          made%quantities(size(made%quantities)) = self%classes%class_of(made%cycle, made%unit, made%turns)
+      end associate
       call add_up(self, self%made(i))
       call self%sink%show_run(self%made(i), self%stopped)
       if (self%before(i)) self%found = self%found + 1

@@ -13,6 +13,7 @@ module mech9_study
     character(len=9) :: carry = 'none'         !< a run begins where the one before ended: none, forwards, backwards or both
     integer :: seed = 1                        !< chooses the numbers of random, latin and sobol
     real(wp), allocatable :: list(:, :)        !< (parameters,runs) the values of a list, in the units of the file
+    logical :: classes = .false.               !< runs are told apart by what their motions go to
     type(place_type) :: place                  !< of its group in the data file
   contains
     procedure :: set_of

@@ -50,6 +50,7 @@ module mech9_study_file
     procedure :: read_run
     procedure :: read_row
     procedure :: write_run
+    procedure :: write_outcome
     procedure :: write_row
     procedure :: close => close_file
     procedure, private :: begin_outcomes
@@ -268,15 +269,25 @@ contains
     integer, intent(in) :: place                        !< of the run in the part, from 1
     type(made_run_type), intent(in) :: run              !< the run
     type(error_type), allocatable, intent(out) :: err   !< allocated if it cannot be written
-    integer :: n
 
     if (self%columns%are_there()) call self%columns%write_run(self%file, place, run%rows)
+    call self%write_outcome(place, run, err)
+  end subroutine write_run
+
+  !> Write the numbers of a run at its place, without its columns over time.
+  subroutine write_outcome(self, place, run, err)
+    class(study_file_type), intent(inout) :: self       !< the file
+    integer, intent(in) :: place                        !< of the run in the part, from 1
+    type(made_run_type), intent(in) :: run              !< the run
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it cannot be written
+    integer :: n
+
     n = size(run%values)
     self%row(:n) = run%values
     self%row(n + 1:n + size(run%quantities)) = run%quantities
     self%row(size(self%row)) = run%exit_code
     call self%write_row(place, self%row, err)
-  end subroutine write_run
+  end subroutine write_outcome
 
   !> Write the row of a run. Runs come mostly in order; the file has them after half a second at most.
   subroutine write_row(self, place, row, err)

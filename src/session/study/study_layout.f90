@@ -59,6 +59,7 @@ contains
         layout%quantities(i)%text = requested(i)%name
         layout%units(i)%text = quantities%unit_of(i)
         layout%meanings(i)%text = trim(requested(i)%take)//' of '//requested(i)%column
+        if (requested(i)%take == 'class') layout%meanings(i)%text = 'class of what the motion goes to'
       end do
     end associate
   end subroutine layout_of

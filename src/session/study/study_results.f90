@@ -181,6 +181,9 @@ contains
     integer :: n
 
     if (allocated(self%section)) call add_points(self%section, run)
+    ! the class is known only now
+    if (allocated(run%cycle) .and. self%file%is_open()) call self%file%write_outcome(run%number, run, err)
+    if (allocated(err)) return
     if (self%paths%table == '') return
     n = 1 + size(run%values)
     self%row(1) = run%number

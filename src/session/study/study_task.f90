@@ -117,9 +117,9 @@ contains
     type(model_type), intent(in) :: model                   !< the model with the values of the data file
     type(error_type), allocatable, intent(out) :: err       !< allocated if it is refused
 
-    if (.not. (model%request%study%carries() .or. model%request%section%is_wanted)) return
-    call raise(err, exit_usage, 'several processes make no study with a section, or with states that are carried on; make it '// &
-               'in one, which has threads')
+    if (.not. (model%request%study%carries() .or. model%request%study%classes .or. model%request%section%is_wanted)) return
+    call raise(err, exit_usage, 'several processes make no study with classes, a section, or states that are carried on; make '// &
+               'it in one, which has threads')
   end subroutine refuse_processes
 
   !> Refuse a part of a study whose runs follow each other, and to continue one whose points no file keeps.
@@ -128,7 +128,10 @@ contains
     type(model_type), intent(in) :: model                   !< the model with the values of the data file
     type(error_type), allocatable, intent(out) :: err       !< allocated if it is refused
 
-    if (model%request%study%carries() .and. (options%has('part') .or. options%has('continue'))) then
+    if (model%request%study%classes .and. (options%has('part') .or. options%has('continue'))) then
+      call raise(err, exit_usage, 'a study with classes numbers them in all its runs, which one program makes: leave out --'// &
+                 trim(merge('part    ', 'continue', options%has('part'))))
+    else if (model%request%study%carries() .and. (options%has('part') .or. options%has('continue'))) then
       call raise(err, exit_usage, 'a study that carries states on makes all its runs, one after the other: leave out --'// &
                  trim(merge('part    ', 'continue', options%has('part'))))
     else if (model%request%section%is_wanted .and. options%has('continue')) then
@@ -200,7 +203,7 @@ contains
     if (allocated(err)) kept = err%code == exit_interrupted
     clock = seconds() - clock
     allocate (propagation(0))
-    if (.not. allocated(err) .and. runs%statistics%drawn .and. runs%sums%done > 0 .and. &
+    if (.not. (allocated(err) .or. model%request%study%classes) .and. runs%statistics%drawn .and. runs%sums%done > 0 .and. &
         .not. (quiet .and. .not. options%has('report'))) then
       call interruption%words%start(model%program, 'no derivatives at the means yet', 'their run', quiet, with_progress=.false.)
       call propagate(model, varied, interruption, propagation, without_shares)

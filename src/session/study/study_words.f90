@@ -54,14 +54,24 @@ contains
     if (statistics%drawn) call statistics%shares(shares)
     do i = 1, size(model%request%quantities)
       associate (name => model%request%quantities(i)%name)
-        if (statistics%drawn .and. sums%done > 1) call print_moments(unit, name, quantities%unit_of(i), sums, i)
+        if (statistics%drawn .and. sums%done > 1 .and. .not. is_class(model, i)) &
+          call print_moments(unit, name, quantities%unit_of(i), sums, i)
         write (unit, '(a)') name//': '//to_text(sums%low(i), 8)//' to '//to_text(sums%high(i), 8)//' '//quantities%unit_of(i)
+        if (is_class(model, i)) cycle
         if (statistics%drawn .and. sums%done > 1) call print_quantiles(unit, name, quantities%unit_of(i), statistics, i)
         if (statistics%drawn) call print_shares(unit, name, model, shares(i))
         if (i <= size(propagation)) call print_propagation(unit, name, quantities%unit_of(i), model, propagation(i))
       end associate
     end do
   end subroutine print_quantities
+
+  !> Whether a quantity is the class of what a motion goes to, whose number has no mean.
+  pure logical function is_class(model, i)
+    type(model_type), intent(in) :: model       !< with its quantities
+    integer, intent(in) :: i                    !< number of the quantity
+
+    is_class = model%request%quantities(i)%take == 'class'
+  end function is_class
 
   !> Print mean and deviation of a quantity, with their standard errors.
   subroutine print_moments(unit, name, unit_name, sums, i)
@@ -184,7 +194,8 @@ contains
       call json%add('name', model%request%quantities(i)%name)
       call json%add('unit', quantities%unit_of(i))
       call add_range(json, sums, i)
-      if (statistics%drawn .and. sums%done > 1) call add_scatter(json, model, sums, statistics, shares(i), i)
+      if (statistics%drawn .and. sums%done > 1 .and. .not. is_class(model, i)) &
+        call add_scatter(json, model, sums, statistics, shares(i), i)
       if (i <= size(propagation)) call add_propagation(json, model, propagation(i))
       call json%end_object()
     end do
