@@ -1,4 +1,4 @@
-!> Quantities of a run, its section, its exponents and periodic motions, as groups of a checked document request them.
+!> Quantities of a run, its section, its exponents, periodic motions and branches, as groups of a checked document request them.
 module mech9_quantity_reader
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
@@ -9,10 +9,10 @@ module mech9_quantity_reader
   use mech9_diagnostics, only: diagnostics_type
   use mech9_request, only: time_grid_type
   use mech9_quantity, only: quantity_type
-  use mech9_long_term, only: section_type, exponents_type, periodic_type
+  use mech9_long_term, only: section_type, exponents_type, periodic_type, branch_request_type
   implicit none
   private
-  public :: read_quantities, read_section, read_exponents, read_periodic
+  public :: read_quantities, read_section, read_exponents, read_periodic, read_branches
 
 contains
 
@@ -132,4 +132,32 @@ contains
     periodic%starts = get_integer(group, 'starts')
     periodic%place = diagnostics%place(group%span)
   end subroutine read_periodic
+
+  !> Read all groups &branch. Their parameters are looked for when these are known.
+  pure subroutine read_branches(document, branches, diagnostics)
+    type(document_type), intent(in) :: document                         !< the data file as groups and items
+    type(branch_request_type), allocatable, intent(out) :: branches(:)  !< one for each group, in their order
+    type(diagnostics_type), intent(inout) :: diagnostics                !< gets the errors
+    integer, allocatable :: numbers(:)
+    integer :: i
+
+    numbers = groups_named(document, 'branch')
+    allocate (branches(size(numbers)))
+    do i = 1, size(numbers)
+      associate (group => document%groups(numbers(i)), branch => branches(i))
+        branch%parameter = get_text(group, 'parameter')
+        branch%of = get_text(group, 'of')
+        branch%has_low = has_name(group, 'low')
+        branch%has_high = has_name(group, 'high')
+        if (branch%has_low) branch%low = get_real(group, 'low')
+        if (branch%has_high) branch%high = get_real(group, 'high')
+        branch%step = get_real(group, 'step')
+        branch%points = get_integer(group, 'points')
+        branch%switch = get_logical(group, 'switch')
+        branch%place = diagnostics%place(group%span)
+        if (branch%has_low .and. branch%has_high .and. .not. branch%low < branch%high) &
+          call diagnostics%add(span_of(group, 'high', 1), 'a branch needs high larger than low')
+      end associate
+    end do
+  end subroutine read_branches
 end module mech9_quantity_reader

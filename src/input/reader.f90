@@ -32,7 +32,7 @@ module mech9_reader
   use mech9_rod_holding, only: hold_idle_rods
   use mech9_output_reader, only: read_output, check_sensitivities, check_links
   use mech9_study_reader, only: read_study
-  use mech9_quantity_reader, only: read_quantities, read_section, read_exponents, read_periodic
+  use mech9_quantity_reader, only: read_quantities, read_section, read_exponents, read_periodic, read_branches
   use mech9_objective_reader, only: read_objectives
   use mech9_limit_reader, only: read_limits
   use mech9_cam_reader, only: read_cams
@@ -166,6 +166,7 @@ contains
       call read_section(document, m, request%section, diagnostics)
       call read_exponents(document, request%exponents, diagnostics)
       call read_periodic(document, request%periodic, diagnostics)
+      call read_branches(document, request%branches, diagnostics)
       call read_cams(document, m%structure, m%pairs, request%cams, diagnostics)
       call check_pairs_given(document, m, diagnostics)
     end associate

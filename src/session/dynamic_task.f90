@@ -11,6 +11,7 @@ module mech9_dynamic_task
   use mech9_equilibrium_task, only: asks_for_equilibrium, find_rest
   use mech9_exponents_task, only: work_on_exponents
   use mech9_periodic_task, only: work_on_periodic
+  use mech9_branch_task, only: work_on_branches
   use mech9_law_times, only: check_times_of_laws
   use mech9_task, only: task_type, answers_only, print_check, check_motion
   use mech9_check_text, only: print_given
@@ -64,6 +65,10 @@ contains
     end if
     if (options%has('periodic')) then
       call work_on_periodic(options, model, diagnostics, reported, kept)
+      return
+    end if
+    if (options%has('branch')) then
+      call work_on_branches(options, model, variable, diagnostics, reported)
       return
     end if
     if (model%is_driven()) then

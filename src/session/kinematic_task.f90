@@ -10,6 +10,7 @@ module mech9_kinematic_task
   use mech9_kept_rows, only: kept_rows_type
   use mech9_requested, only: requested_by_results
   use mech9_run, only: run_type
+  use mech9_branch_task, only: work_on_branches
   use mech9_law_times, only: check_times_of_laws
   use mech9_task, only: task_type, answers_only, print_check, check_motion
   use mech9_check_text, only: print_given
@@ -46,6 +47,10 @@ contains
     logical, intent(out) :: reported                        !< the run has written the report
     type(kept_rows_type), intent(inout), optional :: kept   !< gets the rows as well, for a look at them after the run
 
+    if (options%has('branch')) then
+      call work_on_branches(options, model, variable, diagnostics, reported)
+      return
+    end if
     call work_driven(options, model, variable, diagnostics, reported, kept)
   end subroutine work
 

@@ -139,7 +139,7 @@ contains
         call refuse_overwriting(options, inputs, err, model%request%output, model%request%section)
         reported = reported .or. allocated(err)
         if (allocated(err)) call diagnostics%add_error(err)
-        if (options%has('study') .or. options%has('optimize') .or. options%has('dakota') .or. &
+        if (options%has('study') .or. options%has('optimize') .or. options%has('dakota') .or. options%has('branch') .or. &
             model%request%output%with_derivatives()) &
           call new_varied_document(document, diagnostics%sources, task%program, variable)
         if (.not. allocated(err) .and. options%has('dakota')) then

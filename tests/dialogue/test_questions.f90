@@ -133,6 +133,7 @@ contains
       call draft%give('section', 1, 'coordinate', '1')
       call draft%give('exponents', 1, 'transient', '10')
       call draft%give('periodic', 1, 'starts', '5')
+      call draft%give('branch', 1, 'parameter', '''crank''')
       if (drive /= 'user') call draft%give('motor', 1, 'law', ''''//drive//'''')
     end if
     ! drives and loads have the same laws of time

@@ -166,7 +166,22 @@ module mech9_run_explanations
                   'The motion is the same after this time. It is a multiple of the period of drives, loads and motors. Where '// &
                   'none of them follows the time, give a guess.', '9.42477796076938'), &
     explanation_type('periodic', 'starts', '', &
-                  'The search begins at the start of this file. From random starts it may find other periodic motions.', '20')]
+                  'The search begins at the start of this file. From random starts it may find other periodic motions.', '20'), &
+    explanation_type('branch', 'parameter', '', &
+                  'The branches show positions of rest over the parameter with this name.', 'force'), &
+    explanation_type('branch', 'of', '', &
+                  'Positions of rest are the usual ones. Where all independent coordinates have drives, branches show '// &
+                  'positions in which these stand still.', 'equilibrium'), &
+    explanation_type('branch', 'low', '', &
+                  'Branches end at this value of the parameter.', '0'), &
+    explanation_type('branch', 'high', '', &
+                  'Branches end at this value of the parameter, too.', '20'), &
+    explanation_type('branch', 'step', '', &
+                  'Steps along a branch are no longer. Shorter ones give smoother pictures.', '0.02'), &
+    explanation_type('branch', 'points', '', &
+                  'A branch ends after this number of points in each of its two directions.', '200'), &
+    explanation_type('branch', 'switch', '', &
+                  'With .false. branches that cross at branch points are left out.', '.false.')]
 
   type(explanation_type), parameter :: run_texts(*) = [ &
     explanation_type('time', 'start', '', &

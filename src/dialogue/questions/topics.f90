@@ -57,9 +57,10 @@ module mech9_topics
     topic_type('Objectives', 'objective limit optimum', 'An objective is a path, a function, poses or a quantity that the '// &
                'mechanism should have. A limit is a condition that it must meet. '// &
                'What was begun by mistake is left out by remove.'), &
-    topic_type('Long-term motion', 'section exponents periodic', 'A section has the points at which the motion passes a value, '// &
-               'or those after each period. Exponents tell how fast neighbouring motions part (option --exponents). Periodic '// &
-               'motions, stable or not, are found by --periodic. What was begun by mistake is left out by remove.'), &
+    topic_type('Long-term motion', 'section exponents periodic branch', 'A section has the points at which the motion passes a '// &
+               'value, or those after each period. Exponents tell how fast neighbouring motions part (option --exponents). '// &
+               'Periodic motions, stable or not, are found by --periodic. Branches show positions of rest over a parameter '// &
+               '(option --branch). What was begun by mistake is left out by remove.'), &
     topic_type('Further data', '', '')]
 
 contains
@@ -103,7 +104,7 @@ contains
 
     is_on_request = any(group_table(group_row)%name == ['link     ', 'stop     ', 'friction ', 'contact  ', 'parameter', &
                                                         'quantity ', 'study    ', 'objective', 'limit    ', 'optimum  ', &
-                                                        'section  ', 'exponents', 'periodic '])
+                                                        'section  ', 'exponents', 'periodic ', 'branch   '])
   end function is_on_request
 
   !> Whether the user begins the groups of a name, and can leave them out. There can be any number of most of them, and one of

@@ -184,7 +184,8 @@ contains
     err%failure%t = t
   end subroutine fail_with
 
-  !> The derivatives of the driven coordinates, which their laws give; those of all others are zero.
+  !> The derivatives of the driven coordinates, which their laws give; those of all others are zero, also where a driven coordinate
+  !> depends on others for the time being.
   subroutine vary_drives(model, self, t, q)
     type(model_type), intent(in) :: model             !< the present model
     type(varied_motion_type), intent(in) :: self      !< with the derivatives of constants
@@ -197,7 +198,7 @@ contains
     do p = 1, self%n_parameters
       do i = 1, size(model%problem%drives)
         associate (part => self%tangents(p)%drives(i), drive => model%problem%drives(i)%drive)
-          if (.not. part%varies) cycle
+          if (.not. (part%varies .and. any(self%plan%independent == drive%coordinate))) cycle
           call drive%vary(part%change, t, change(0), change(1), change(2))
           q(p, :, drive%coordinate) = change
         end associate

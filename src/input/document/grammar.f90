@@ -61,6 +61,7 @@ module mech9_grammar
     group_row_type('section', .false., '', both, 'points of the motion at values of a coordinate or a column, or after periods'), &
     group_row_type('exponents', .false., '', dynamics, 'the times over which the option --exponents takes Lyapunov exponents'), &
     group_row_type('periodic', .false., '', dynamics, 'the search of the option --periodic for periodic motions'), &
+    group_row_type('branch', .true., '', both, 'positions of rest over a parameter, for the option --branch'), &
     group_row_type('time', .false., '', both, &
                    'the times of the results: start + (end - start) i/intervals, i = 0 .. intervals'), &
     group_row_type('solver', .false., '', dynamics, 'method and tolerances of the integration'), &

@@ -36,8 +36,8 @@ module mech9_named_number
   character(len=*), parameter :: digits = '0123456789'
   real(wp), parameter :: most_whole = 2.0_wp**53   !< whole numbers beyond it have neighbours that are not whole
   !> Groups whose numbers describe studies, not a mechanism and its motion.
-  character(len=9), parameter :: closed_groups(6) = [character(len=9) :: 'parameter', 'quantity', 'study', 'objective', &
-                                                                   'limit', 'optimum']
+  character(len=9), parameter :: closed_groups(7) = [character(len=9) :: 'parameter', 'quantity', 'study', 'objective', &
+                                                                   'limit', 'optimum', 'branch']
 
 contains
 

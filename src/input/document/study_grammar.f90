@@ -157,5 +157,21 @@ module mech9_study_grammar
     item_row_type('periodic', 'period', 'real', 1, 1, 's', optional, '(that of the drives)', '>0', '', '', &
                   'period: a multiple of that of drives, loads and motors; where none follows time, a guess', '9.42477796076938'), &
     item_row_type('periodic', 'starts', 'integer', 1, 1, '', optional, '0', '>=0', '', '', &
-                  'random starts beside that of the file, from which other periodic motions are looked for', '20')]
+                  'random starts beside that of the file, from which other periodic motions are looked for', '20'), &
+    item_row_type('branch', 'parameter', 'text', 1, 1, '', needed, '', '', '', '', &
+                  'name of the &parameter over which the branches are', '''force'''), &
+    item_row_type('branch', 'of', 'text', 1, 1, '', optional, '(from the drives)', '', 'equilibrium position periodic', '', &
+                  'positions of rest, positions in which all independent coordinates keep their values, or periodic motions', &
+                  '''equilibrium''', seldom=.true.), &
+    item_row_type('branch', 'low', 'real', 1, 1, '', optional, '(of the parameter)', '', '', '', &
+                  'least value of the parameter, at which branches end', '0'), &
+    item_row_type('branch', 'high', 'real', 1, 1, '', optional, '(of the parameter)', '', '', '', &
+                  'largest value of the parameter', '20'), &
+    item_row_type('branch', 'step', 'real', 1, 1, '', optional, '0.05', '>0', '', '', &
+                  'longest step along a branch: 1 is 1 rad, the size of the mechanism, or the range of the parameter', '0.02', &
+                  seldom=.true.), &
+    item_row_type('branch', 'points', 'integer', 1, 1, '', optional, '1000', '>=1', '', '', &
+                  'largest number of points of a branch in each of its two directions', '200', seldom=.true.), &
+    item_row_type('branch', 'switch', 'logical', 1, 1, '', optional, '.true.', '', '', '', &
+                  'branches that cross at branch points are followed, too', '.false.', seldom=.true.)]
 end module mech9_study_grammar

@@ -1,10 +1,10 @@
-!> Requests that concern the long-term motion: a section, Lyapunov exponents, and periodic motions.
+!> Requests that concern the long-term motion: a section, Lyapunov exponents, periodic motions, and branches over a parameter.
 module mech9_long_term
   use mech9_kinds, only: wp
   use mech9_error, only: place_type
   implicit none
   private
-  public :: section_type, exponents_type, periodic_type
+  public :: section_type, exponents_type, periodic_type, branch_request_type
 
   !> The points of a motion at which a coordinate or a column of the results has a value, or at the ends of periods.
   type :: section_type
@@ -34,4 +34,18 @@ module mech9_long_term
     integer :: starts = 0                      !< random starts beside that of the data file
     type(place_type) :: place                  !< of its group in the data file
   end type periodic_type
+
+  !> Branches of positions over a parameter.
+  type :: branch_request_type
+    character(len=:), allocatable :: parameter !< its name
+    character(len=:), allocatable :: of        !< equilibrium, position or periodic; empty: the program decides
+    logical :: has_low = .false.               !< `low` is given; else it is that of the parameter
+    logical :: has_high = .false.              !< `high` is given
+    real(wp) :: low = 0.0_wp                   !< least value of the parameter, in the units of the data file
+    real(wp) :: high = 0.0_wp                  !< its largest value
+    real(wp) :: step = 0.05_wp                 !< longest step [rad, lengths of the mechanism, ranges of the parameter]
+    integer :: points = 1000                   !< largest number of points of a branch in each direction
+    logical :: switch = .true.                 !< branches are followed from branch points
+    type(place_type) :: place                  !< of its group in the data file
+  end type branch_request_type
 end module mech9_long_term

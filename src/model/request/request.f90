@@ -5,7 +5,7 @@ module mech9_request
   use mech9_error, only: place_type
   use mech9_quantity, only: quantity_type
   use mech9_study, only: study_type
-  use mech9_long_term, only: section_type, exponents_type, periodic_type
+  use mech9_long_term, only: section_type, exponents_type, periodic_type, branch_request_type
   use mech9_objective, only: objective_type, limit_type, optimum_type
   implicit none
   private
@@ -94,6 +94,7 @@ module mech9_request
     type(section_type) :: section
     type(exponents_type) :: exponents
     type(periodic_type) :: periodic
+    type(branch_request_type), allocatable :: branches(:)   !< in the order of the data file; for --branch
   end type request_type
 
 contains

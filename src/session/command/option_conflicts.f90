@@ -8,12 +8,12 @@ module mech9_option_conflicts
 
   !> The options that replace a run by an answer, the first ones before the others.
   character(len=*), parameter :: answers(*) = [character(len=11) :: 'structure', 'check', 'plan', 'branches', 'range', 'cam', &
-                                               'graph', 'equilibrium', 'modes', 'linear', 'exponents', 'dakota']
+                                               'graph', 'equilibrium', 'modes', 'linear', 'exponents', 'branch', 'dakota']
   !> Those of them that are about positions of equilibrium.
   character(len=*), parameter :: of_rest(*) = [character(len=11) :: 'equilibrium', 'modes', 'linear']
   !> Options that a conversation does not take.
   character(len=*), parameter :: of_files(*) = [character(len=11) :: 'check', 'structure', 'plan', 'branches', 'range', 'cam', &
-                                                'equilibrium', 'modes', 'linear', 'exponents', 'periodic', 'study', &
+                                                'equilibrium', 'modes', 'linear', 'exponents', 'periodic', 'branch', 'study', &
                                                 'optimize', 'dakota', 'set']
 
 contains
@@ -91,6 +91,8 @@ contains
       call judge_optimum(given, err)
     else if (has('exponents')) then
       call judge_exponents(given, err)
+    else if (has('branch')) then
+      call judge_branch(given, err)
     else if (has('periodic') .and. answer_of(given) /= '') then
       call raise(err, exit_usage, '--'//answer_of(given)//' and --periodic are two tasks; give one of them')
     else if (rest_of(given) /= '') then
@@ -241,6 +243,26 @@ contains
       return
     end do
   end subroutine judge_exponents
+
+  !> Fail because of options that have no meaning beside --branch.
+  pure subroutine judge_branch(given, err)
+    character(len=*), intent(in) :: given(:)           !< names of the options that are given, without the dashes
+    type(error_type), allocatable, intent(out) :: err  !< allocated if there are any
+    character(len=*), parameter :: allowed(*) = [character(len=8) :: 'branch', 'table', 'hdf5', 'plot', 'report', 'no-write', &
+                                                 'quiet', 'set']
+    integer :: i
+
+    do i = 1, size(given)
+      if (any(given(i) == allowed)) cycle
+      if (given(i) == 'starts' .or. .not. any(given(i) == answers)) then
+        call raise(err, exit_usage, '--'//trim(given(i))//' has no meaning beside --branch, which writes a table, plots and a '// &
+                   'report; leave one of them out')
+      else
+        call raise(err, exit_usage, '--'//trim(given(i))//' and --branch are two tasks; give one of them')
+      end if
+      return
+    end do
+  end subroutine judge_branch
 
   !> Check the options of a conversation: it takes one data file or none, and no option that replaces the run by an answer.
   pure subroutine judge_conversation(program, given, has_file, err)

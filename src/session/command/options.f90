@@ -33,7 +33,7 @@ module mech9_options
     option_type('plan', no_argument, '', any_text, .false., both, &
                 'print the computations in their order, and those that are left out'), &
     option_type('branches', no_argument, '', any_text, .false., both, &
-                'list the assemblies found for the start from many random guesses'), &
+                'list the assemblies of the start, from random guesses (no &branch)'), &
     option_type('starts', needed_argument, 'N', whole_number, .false., both, &
                 'number of guesses for --branches (100), or --equilibrium (none)'), &
     option_type('equilibrium', no_argument, '', any_text, .false., dynamics, &
@@ -48,6 +48,8 @@ module mech9_options
                 'find the K largest Lyapunov exponents of the motion'), &
     option_type('periodic', no_argument, '', any_text, .false., dynamics, &
                 'find a periodic motion, stable or not, and record one period of it'), &
+    option_type('branch', needed_argument, 'NAME', any_text, .false., both, &
+                'find branches of positions of rest over the parameter NAME'), &
     option_type('range', no_argument, '', any_text, .false., kinematics, &
                 'print how far each independent coordinate can go from the start'), &
     option_type('cam', needed_argument, '[N:]FILE', any_text, .true., kinematics, &

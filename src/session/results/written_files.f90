@@ -52,8 +52,8 @@ contains
       allocate (paths%animations(merge(1, 0, output%animation /= '')))
       if (output%animation /= '') paths%animations(1)%text = output%animation
     end if
-    if (options%has('study')) then
-      ! a study draws no pictures
+    if (options%has('study') .or. options%has('branch')) then
+      ! they draw no pictures of the mechanism
       paths%sketch = ''
       paths%animations = paths%animations(:0)
     end if
@@ -84,9 +84,10 @@ contains
     type(section_type), intent(in), optional :: section             !< the group &section of the data file
 
     allocate (files(0))
-    if (present(output) .and. options%answer() == '') then
+    if (present(output) .and. (options%answer() == '' .or. options%has('branch'))) then
       call list_results(options, output, files)
-      if (present(section) .and. .not. any([options%has('study'), options%has('optimize'), options%has('no-write')])) &
+      if (present(section) .and. .not. any([options%has('study'), options%has('optimize'), options%has('branch'), &
+                                            options%has('no-write')])) &
         call append(files, '&section table', section%table)
     else if (present(output)) then
       call list_answers(options, files)

@@ -1,0 +1,88 @@
+!> A curve of solutions: n equations in n+1 unknowns, of which the last is a parameter, as an abstract problem.
+!>
+!> A point has an image z, all quantities that describe it, each in its unit, with the parameter last. Some of its components are the
+!> unknowns; the others follow from them. Lengths and angles are those of images, so that a curve does not depend on the choice of
+!> unknowns, which may change from point to point.
+module mech9_curve
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  implicit none
+  private
+  public :: curve_type, curve_point_type, verdict_type
+
+  !> A point near a curve, with what is known of the equations there.
+  type :: curve_point_type
+    real(wp), allocatable :: z(:)              !< (m) image, in units of its components
+    integer, allocatable :: place(:)           !< (n+1) the components that are unknowns; the last one is m
+    real(wp), allocatable :: residual(:)       !< (n) values of the equations
+    real(wp), allocatable :: jacobian(:, :)    !< (n,n+1) their derivatives by the unknowns
+    real(wp), allocatable :: slopes(:, :)      !< (m,n+1) derivatives of the image by the unknowns
+    real(wp), allocatable :: tangent(:)        !< (n+1) of the curve, in the unknowns; of length 1 as an image
+    real(wp), allocatable :: direction(:)      !< (m) the same as an image
+  end type curve_point_type
+
+  !> The stability of a solution, as the problem judges it.
+  type :: verdict_type
+    real(wp) :: growth = 0.0_wp                !< largest real part of the roots [1/s]; may have no value
+    logical :: is_stable = .true.              !< no small deviation grows
+    complex(wp), allocatable :: roots(:)       !< one of each conjugate pair [1/s]; none where they have no meaning
+  end type verdict_type
+
+  type, abstract :: curve_type
+    integer :: n = 0                           !< number of equations
+    integer :: m = 0                           !< number of components of an image
+    real(wp) :: scale = 1.0_wp                 !< size of the derivatives of the equations, at the start
+    real(wp), allocatable :: period(:)         !< (m) a component that differs by it is the same; 0: none, in its unit
+  contains
+    procedure(evaluated), deferred :: evaluate
+    procedure(changed), deferred :: change_unknowns
+    procedure(judged), deferred :: judge
+    procedure :: gap => no_gap
+    procedure :: is_stopped => never_stopped
+  end type curve_type
+
+  abstract interface
+    !> The equations at a point. Fails where they have no value there.
+    subroutine evaluated(self, place, guess, point, err)
+      import :: curve_type, curve_point_type, wp, error_type
+      class(curve_type), intent(inout) :: self            !< the problem
+      integer, intent(in) :: place(:)                     !< (n+1) the components of the image that are unknowns
+      real(wp), intent(in) :: guess(:)                    !< (m) image: exact in the unknowns, near in the others
+      type(curve_point_type), intent(out) :: point        !< the point, without a tangent
+      type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    end subroutine evaluated
+
+    !> Choose other unknowns where they serve better. The point is then evaluated again.
+    subroutine changed(self, point, err)
+      import :: curve_type, curve_point_type, error_type
+      class(curve_type), intent(inout) :: self            !< the problem
+      type(curve_point_type), intent(inout) :: point      !< on the curve; its tangent has no meaning afterwards
+      type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    end subroutine changed
+
+    !> Judge a point on the curve. Never fails: what is not known has no value.
+    subroutine judged(self, point, verdict)
+      import :: curve_type, curve_point_type, verdict_type
+      class(curve_type), intent(inout) :: self            !< the problem
+      type(curve_point_type), intent(in) :: point         !< on the curve
+      type(verdict_type), intent(out) :: verdict          !< stability
+    end subroutine judged
+  end interface
+
+contains
+
+  !> The room up to the nearest end of the range in which solutions have a meaning; below zero beyond it. Without such ends it is 1.
+  pure real(wp) function no_gap(self, point) result(gap)
+    class(curve_type), intent(in) :: self               !< the problem
+    type(curve_point_type), intent(in) :: point         !< on the curve
+
+    gap = 1.0_wp + 0.0_wp*size(point%z)*self%n
+  end function no_gap
+
+  !> Whether the work shall stop.
+  logical function never_stopped(self) result(stopped)
+    class(curve_type), intent(in) :: self   !< the problem
+
+    stopped = self%n < 0
+  end function never_stopped
+end module mech9_curve

@@ -1,0 +1,179 @@
+!> The work of the programs for --branch: positions over a parameter, with table, HDF5 file, plots and report.
+module mech9_branch_task
+  use, intrinsic :: iso_fortran_env, only: error_unit
+  use mech9_error, only: error_type
+  use mech9_json, only: json_type
+  use mech9_text, only: string_type
+  use mech9_heading, only: heading_of
+  use mech9_plot, only: picture_of_plot
+  use mech9_branch_plot, only: branch_rows_type, draw_branch_plot, read_branch_plot
+  use mech9_plot_request, only: plot_request_type
+  use mech9_table, only: table_type
+  use mech9_hdf5_file, only: hdf5_file_type
+  use mech9_structure_layout, only: write_structure, write_coordinates
+  use mech9_branches_layout, only: write_branches
+  use mech9_hdf5_record, only: write_provenance
+  use mech9_program_kind, only: dynamics
+  use mech9_command_line, only: command_line_type
+  use mech9_diagnostics, only: diagnostics_type
+  use mech9_model, only: model_type
+  use mech9_variable_model, only: variable_model_type
+  use mech9_law_times, only: check_times_of_laws
+  use mech9_written_files, only: result_paths_type, find_result_paths
+  use mech9_branches, only: branches_found_type, find_branches, columns_of_branches
+  use mech9_columns, only: columns_type
+  use mech9_branches_report, only: add_branches
+  use mech9_branch_words, only: print_branches
+  use mech9_friction_text, only: print_left_out
+  use mech9_report_parts, only: begin_report
+  use mech9_signal_interruption, only: signal_interruption_type
+  use mech9_version, only: name_and_version
+  implicit none
+  private
+  public :: work_on_branches
+
+contains
+
+  !> Find the branches that --branch asks for, and write them.
+  subroutine work_on_branches(options, model, variable, diagnostics, reported)
+    type(command_line_type), intent(in) :: options                  !< the command line
+    type(model_type), intent(in) :: model                           !< the model
+    class(variable_model_type), intent(inout), target :: variable   !< the model as a function of its parameters
+    type(diagnostics_type), intent(inout) :: diagnostics            !< gets the errors
+    logical, intent(out) :: reported                                !< the report is written
+    type(branches_found_type) :: found
+    type(result_paths_type) :: paths
+    type(error_type), allocatable :: err, of_files
+
+    reported = .false.
+    call check_times_of_laws(model, model%program == dynamics, diagnostics)
+    if (diagnostics%failed()) return
+    call find_result_paths(options, model%request%output, paths)
+    call check_plots(options, model, err)
+    if (.not. allocated(err)) &
+      call find_branches(model, variable, options%argument('branch'), found, err, signal_interruption_type())
+    if (found%count() > 0) then
+      if (.not. options%has('quiet')) call tell(model, found)
+      if (paths%table /= '') call write_table(paths%table, model, found, of_files)
+      if (paths%hdf5 /= '' .and. .not. allocated(of_files)) &
+        call write_hdf5(paths%hdf5, options, model, found, diagnostics%sources(1)%text, of_files)
+      if (.not. allocated(of_files)) call draw_plots(options, model, found, paths%table, of_files)
+    end if
+    if (allocated(err)) call diagnostics%add_error(err)
+    if (allocated(of_files)) call diagnostics%add_error(of_files)
+    if (.not. options%has('report')) return
+    call save_report(options, model, paths%table, found, diagnostics, err)
+    reported = .not. allocated(err)
+    if (allocated(err)) call diagnostics%add_error(err)
+  end subroutine work_on_branches
+
+  !> Print what was found.
+  subroutine tell(model, found)
+    type(model_type), intent(in) :: model                !< the model
+    type(branches_found_type), intent(in) :: found       !< the branches
+
+    if (model%mechanism%title /= '') write (error_unit, '(a)') model%mechanism%title
+    call print_branches(error_unit, found)
+    if (any(found%at_rest)) call print_left_out(error_unit, model%mechanism)
+  end subroutine tell
+
+  !> Write the table.
+  subroutine write_table(path, model, found, err)
+    character(len=*), intent(in) :: path                 !< of the file; '-' is standard output
+    type(model_type), intent(in) :: model                !< the model
+    type(branches_found_type), intent(in) :: found       !< the branches
+    type(error_type), allocatable, intent(out) :: err    !< allocated if the file cannot be written
+    type(error_type), allocatable :: at_close
+    type(table_type) :: table
+
+    call table%open(path, heading_of(model%mechanism%title, found%columns), name_and_version(model%program), err)
+    if (allocated(err)) return
+    call table%write_rows(found%rows, err)
+    call table%close(at_close)
+    if (.not. allocated(err)) call move_alloc(at_close, err)
+  end subroutine write_table
+
+  !> Write the HDF5 file.
+  subroutine write_hdf5(path, options, model, found, data_text, err)
+    character(len=*), intent(in) :: path                 !< of the file
+    type(command_line_type), intent(in) :: options       !< the command line
+    type(model_type), intent(in) :: model                !< the model
+    type(branches_found_type), intent(in) :: found       !< the branches
+    character(len=*), intent(in) :: data_text            !< text of the data file
+    type(error_type), allocatable, intent(out) :: err    !< allocated if the file cannot be written
+    type(hdf5_file_type) :: file
+
+    call file%create(path, err)
+    if (allocated(err)) return
+    call write_coordinates(file, model)
+    call write_provenance(file, options, model, data_text)
+    call write_structure(file, model)
+    call write_branches(found, file)
+    call file%flush()
+    call file%close()
+    if (allocated(file%failure)) err = file%failure
+  end subroutine write_hdf5
+
+  !> Draw the plots, and print a line about each.
+  subroutine draw_plots(options, model, found, table, err)
+    type(command_line_type), intent(in) :: options       !< the command line
+    type(model_type), intent(in) :: model                !< the model
+    type(branches_found_type), intent(in) :: found       !< the branches
+    character(len=*), intent(in) :: table                !< path of the table; empty: none
+    type(error_type), allocatable, intent(out) :: err    !< allocated if a plot cannot be made
+    type(branch_rows_type) :: branches
+    type(string_type), allocatable :: requests(:)
+    character(len=:), allocatable :: picture, said
+    logical :: is_lacking
+    integer :: i
+
+    call options%arguments('plot', requests)
+    if (size(requests) == 0) return
+    branches%heading = heading_of(model%mechanism%title, found%columns)
+    branches%rows = found%rows
+    branches%stable = found%stable
+    do i = 1, size(requests)
+      call picture_of_plot(requests(i)%text, table, options%file, i, picture)
+      call draw_branch_plot(requests(i)%text, branches, picture, said, is_lacking, err)
+      if (allocated(err)) return
+      if (said /= '' .and. (is_lacking .or. .not. options%has('quiet'))) write (error_unit, '(a)') said
+    end do
+  end subroutine draw_plots
+
+  !> Fail with exit_usage where --plot asks for a column that the branches do not have.
+  subroutine check_plots(options, model, err)
+    type(command_line_type), intent(in) :: options       !< the command line
+    type(model_type), intent(in) :: model                !< the model
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
+    type(columns_type) :: columns
+    type(plot_request_type) :: request
+    type(string_type), allocatable :: requests(:)
+    integer :: i, j
+
+    call options%arguments('plot', requests)
+    do j = 1, size(model%parameters)
+      if (model%parameters(j)%name /= options%argument('branch')) cycle
+      columns = columns_of_branches(model, model%parameters(j), .true.)
+      do i = 1, size(requests)
+        call read_branch_plot(requests(i)%text, columns%names(:columns%count), request, err)
+        if (allocated(err)) return
+      end do
+    end do
+  end subroutine check_plots
+
+  !> Save the report.
+  subroutine save_report(options, model, table, found, diagnostics, err)
+    type(command_line_type), intent(in) :: options          !< the command line
+    type(model_type), intent(in) :: model                   !< the model
+    character(len=*), intent(in) :: table                   !< path of the table; empty: none
+    type(branches_found_type), intent(in) :: found          !< the branches; without any after a failure
+    type(diagnostics_type), intent(in) :: diagnostics       !< the errors
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    type(json_type) :: json
+
+    call begin_report(json, model, diagnostics, table)
+    call add_branches(json, found)
+    call json%end_object()
+    call json%save(options%argument('report'), err)
+  end subroutine save_report
+end module mech9_branch_task
