@@ -176,6 +176,10 @@ int mech9_range(const mech9_mechanism *mechanism, const volatile int *stop, mech
    the running means. */
 int mech9_exponents(const mech9_mechanism *mechanism, int count, const volatile int *stop, mech9_results **results,
                     mech9_error *error);
+/* Branches of positions over the parameter of this name, of rest where with_forces is not 0: a row for each point, with the columns of
+   --branch, and their part of a report as text. */
+int mech9_branch(const mech9_mechanism *mechanism, const char *parameter, int with_forces, const volatile int *stop,
+                 mech9_results **results, mech9_error *error);
 /* The profile of a cam, from 1 in the order of its groups: a row for each output, and its entry in a report as text. */
 int mech9_cam(const mech9_mechanism *mechanism, int number, mech9_results **results, mech9_error *error);
 int mech9_study(const mech9_mechanism *mechanism, int with_forces, int threads, const volatile int *stop,

@@ -105,6 +105,7 @@ _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     'assemblies': (_STATUS, [c_void_p, c_int, c_void_p, POINTER(c_void_p)]),
     'range': (_STATUS, [c_void_p, c_void_p, POINTER(c_void_p)]),
     'exponents': (_STATUS, [c_void_p, c_int, c_void_p, POINTER(c_void_p)]),
+    'branch': (_STATUS, [c_void_p, c_char_p, c_int, c_void_p, POINTER(c_void_p)]),
     'cam': (_STATUS, [c_void_p, c_int, POINTER(c_void_p)]),
     'study': (_STATUS, [c_void_p, c_int, c_int, c_void_p, POINTER(c_void_p)]),
     'linear': (_STATUS, [c_void_p, POINTER(c_void_p)]),

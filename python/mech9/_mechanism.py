@@ -17,7 +17,7 @@ from ._library import Handle, call, call_stoppable, count, lib, warn_of_raised
 from ._library import text as text_of
 from ._pictures import Picture, drawn
 from ._procedures import Procedure, Progress
-from ._results import Exponents, Linear, Periodic, Results, SecondOrder, StateSpace, multipliers_of
+from ._results import Branches, Exponents, Linear, Periodic, Results, SecondOrder, StateSpace, multipliers_of
 from ._words import group, run_setting, written
 
 if TYPE_CHECKING:
@@ -384,6 +384,16 @@ class Mechanism:
         run = moved._run(lib.periodic, {}, None)
         found = run.report['periodic']
         return Periodic(found['period'], multipliers_of(found), found['stability'], run, tuple(run.report.get('periodic_motions', [found])))
+
+    def branch(self, parameter: str, forces: bool = True, **words: Any) -> Branches:
+        """Branches of positions over a parameter: of rest, or with forces=False positions of a driven mechanism. It takes the words of
+        &branch, as low=0 and high=20; they stand in place of all groups &branch for this call alone."""
+        moved = self
+        if words:
+            moved = self.copy().remove('branch')
+            moved.add('branch', parameter=parameter, **words)
+        found = moved._results(lib.branch, lambda m, stop, out: (m, text_of(parameter), int(forces), stop, out))
+        return Branches(parameter, found.names, found.units, found.table, found.report.get('branches', []))
 
     def cam(self, number: int = 1) -> Results:
         """The profile of a cam, of which &cam describes the follower: the columns of --cam, and its entry of a report as `report`."""

@@ -6,7 +6,7 @@ import html
 import json
 import os
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Callable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any, Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -353,6 +353,68 @@ class Periodic:
     stability: str
     run: Results
     motions: tuple[dict[str, Any], ...]
+
+
+class Branches(Mapping[str, np.ndarray]):
+    """Branches over a parameter: `branch`, `point`, the parameter, the coordinates, `growth` and `type`, by their names.
+
+    names, units: of the columns. table: (points, columns), read-only. branches: what a report says of each, with its special points.
+    """
+
+    def __init__(self, parameter: str, names: Sequence[str], units: Mapping[str, str], table: np.ndarray, branches: list[dict[str, Any]]):
+        self.parameter = parameter
+        self.names: tuple[str, ...] = tuple(names)
+        self.units: dict[str, str] = dict(units)
+        self.table: np.ndarray = table
+        self.branches = branches
+        self._columns = {name: i for i, name in enumerate(self.names)}
+
+    @property
+    def special_points(self) -> list[dict[str, Any]]:
+        """All special points in the order of the table: `branch`, `point`, `type`, `kind`, `value`, `q`, `growth`."""
+        return [{'branch': branch['branch'], **point} for branch in self.branches for point in branch['special_points']]
+
+    def plot(self, y: str, x: str | None = None) -> Any:
+        """A column over the parameter, or over another one: a matplotlib Figure; unstable positions are broken lines."""
+        from matplotlib.figure import Figure
+        figure = Figure()
+        axes = figure.add_subplot()
+        x = self.parameter if x is None else x
+        growing = self['growth'] > 0 if 'growth' in self._columns else np.zeros(len(self.table), bool)
+        between = np.where(self['type'][1:] > 0, growing[:-1], growing[1:])
+        same = self['branch'][1:] == self['branch'][:-1]
+        for unstable, style in ((False, '-'), (True, '--')):
+            shown = same & (between == unstable)
+            pairs = np.where(shown, np.arange(len(shown)), -1)
+            lines = [np.array([self[name][pairs], self[name][pairs + 1], np.full(len(shown), np.nan)]).T[shown].ravel() for name in (x, y)]
+            axes.plot(*lines, style, color='C1' if unstable else 'C0', label='unstable' if unstable else 'stable')
+        for kind, marker, label in ((1, 'o', 'fold'), (2, 's', 'branch point'), (3, '^', 'Hopf point')):
+            rows = self['type'] == kind
+            if rows.any():
+                axes.plot(self[x][rows], self[y][rows], marker, color='black', label=label)
+        axes.set_xlabel(f'{x} [{self.units[x]}]')
+        axes.set_ylabel(f'{y} [{self.units[y]}]')
+        axes.legend()
+        return figure
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """A column (points,), read-only."""
+        try:
+            return self.table[:, self._columns[name]]
+        except KeyError:
+            raise KeyError(f'branches have no column {name!r}; their columns are {", ".join(self.names)}') from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.names)
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def __repr__(self) -> str:
+        return f'<mech9.Branches: {len(self.branches)} over {self.parameter}, {len(self.table)} points>'
+
+    __eq__ = object.__eq__   # arrays have no single answer
+    __hash__ = object.__hash__
 
 
 class Gradients(Mapping[str, Mapping[str, float]]):

@@ -12,7 +12,7 @@ module mech9_api_analyses
   use mech9_api_results, only: results_type, show_results, put_texts, put_matrix
   implicit none
   private
-  public :: end_analysis
+  public :: end_analysis, has_rows
 
 contains
 

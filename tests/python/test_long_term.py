@@ -63,3 +63,22 @@ def test_periodic(checks, mech9, oscillator):
     checks.equal(len(oscillator.periodic(starts=2, period=2 * period).motions), 1, 'random starts lead to the same motion')
     with pytest.raises(mech9.DataError):
         oscillator.periodic(period=1.0)
+
+
+def test_branches(checks, mech9):
+    """Branches of an inverted pendulum: the pitchfork P l sin q = k q; words of &branch hold for one call."""
+    m = mech9.read_text("&structure cq=1 /\n&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /\n"
+                        "&body link=2, mass=1, centre=0,2,0 /\n&load kind='coordinate', coordinate=1, stiffness=7 /\n"
+                        "&load kind='force', link=2, position=0,2,0, force=0,-1,0 /\n&initial coordinate=1, position=0 /\n"
+                        "&parameter name='P', sets='load(2).force(2)', factors=-1, value=1, low=0, high=10 /\n")
+    found = m.branch('P')
+    checks.equal([(point['branch'], point['type']) for point in found.special_points], [(1, 2), (2, 2)], 'the branch point, on both branches')
+    checks.near(found.special_points[0]['value'], 3.5, 1e-12, 'its load', scale=1)
+    checks.near(2 * found['P'] * np.sin(found['q1']), 7 * found['q1'], 1e-11, 'both branches', scale=1)
+    checks.equal((found.names, found.units['q1'], len(found.branches)), (('branch', 'point', 'P', 'q1', 'growth', 'type'), 'rad', 2), 'columns')
+    checks.true(not found.table.flags.writeable, 'the points are read-only')
+    few = m.branch('P', points=5, switch=False)
+    checks.equal((len(few.table), few.branches[0]['ends']), (9, ['points', 'points']), 'words of &branch')
+    checks.near(m.branch('P').table, found.table, 0, 'they hold for one call', scale=1)
+    with pytest.raises(mech9.UsageError, match='there is no parameter'):
+        m.branch('Q')
