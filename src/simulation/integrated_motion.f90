@@ -386,7 +386,7 @@ contains
     self%system%interval%friction = 0
     self%system%interval%rubbing = 0
     call self%system%move_to(self%t, self%y, err)
-    if (.not. allocated(err)) call self%begin_passage(met, of_held, released, err)
+    if (.not. allocated(err)) call self%begin_passage(met, friction, of_held, released, err)
     if (allocated(err)) return
     contacts_before = self%contacts
     call meet_contacts(self%system, met, rubbing, of_held, self%contacts, impulses, changes, impact, holds_change, events, err)
@@ -423,9 +423,10 @@ contains
 
   !> Begin with the derivatives at an event, if any are integrated. Before an impact the coordinates that stops and frictions hold are
   !> released, since they take part in it.
-  subroutine begin_passage(self, met, of_held, released, err)
+  subroutine begin_passage(self, met, friction, of_held, released, err)
     class(integrated_motion_type), intent(inout) :: self   !< the motion, whose system stands before the event
     integer, intent(in) :: met                             !< number of the end that is met, left or released; 0: none
+    integer, intent(in) :: friction                        !< number of the friction that changes; 0: none
     real(wp), intent(in) :: of_held(:)                     !< (M) rates that held coordinates would have if nothing held them [rad/s, m/s]
     logical, intent(out) :: released                       !< coordinates were released
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
@@ -435,6 +436,7 @@ contains
     if (allocated(self%passage)) deallocate (self%passage)
     allocate (self%passage)
     call self%passage%begin(self%system, of_held, err)
+    if (friction > 0 .and. .not. allocated(err)) call self%passage%meet_friction(self%system, friction, err)
     if (met == 0 .or. .not. allocated(self%system%held) .or. allocated(err)) return
     released = self%contacts%ends(met)%is_rigid .and. .not. self%contacts%ends(met)%held
     if (.not. released) return
@@ -489,11 +491,8 @@ contains
 
     sticking = [integer ::]
     contacts = self%contacts
-    if (present(nothing)) then
-      contacts%ends%held = .false.
-    else if (allocated(self%system%friction)) then
-      sticking = self%system%friction%held
-    end if
+    if (present(nothing)) contacts%ends%held = .false.
+    if (allocated(self%system%friction) .and. .not. present(nothing)) sticking = self%system%friction%held
     call choose_held(self%system, contacts, sticking, partition)
     call hold_by_drives(contacts, sticking, self%system%state%q, self%angles%held%drives, self%system%held)
     allocate (other)
@@ -506,6 +505,7 @@ contains
       call self%system%project(self%t, self%y, err)
       if (.not. allocated(err)) call self%system%pass_limits(err)
       if (.not. allocated(err)) call self%system%present(err)
+      if (allocated(self%passage) .and. .not. allocated(err)) call refuse_angles(self%angles, self%t, err)
       if (allocated(self%passage) .and. .not. allocated(err)) &
         call self%passage%hand_on(self%variable, self%system, err)
       if (.not. allocated(err)) call self%begin(err)

@@ -73,10 +73,14 @@ contains
     case (5)
       text = 'the rate of a drive jumps while a stop or friction holds a coordinate'
     case (6)
-      text = 'stop '//to_text(failure%number)//' is hit, where columns may jump that quantities follow between outputs (give '// &
-             'quantities that take ''start'', ''end'' or ''at'')'
+      text = 'columns may jump that quantities follow between outputs (give quantities of positions by mean, rms or integral, '// &
+             'or take ''start'', ''end'' or ''at'')'
+    case (7)
+      text = 'the pair of friction '//to_text(failure%number)//' begins to slip, and its coefficient at rest is above that of '// &
+             'sliding (give both the same value)'
     case default
-      text = 'the pair of friction '//to_text(failure%number)//' comes to rest without an acceleration'
+      text = 'the pair of friction '//to_text(failure%number)//' is at rest without an acceleration, or at the start with a '// &
+             'rate that parameters change'
     end select
   end function cause_at_event
 end module mech9_sensitivity_words

@@ -270,6 +270,10 @@ def driven_cases():
         ('self_locking', WEDGE, (), SINGULAR,
          ['coordinate 3 cannot be driven in the negative direction at t = 0 s: the mechanism locks itself by the friction of coordinate 2, '
           'whose coefficient is 0.6; from 0.5 on no force moves it this way. Lower the coefficient, or drive another coordinate']),
+        ('friction_sensitivity', RUBBING.replace('&initial coordinate=1, position=0, velocity=1 /\n', drive(1, '0, 1'))
+         + "&parameter name='mu', sets='friction(1).dynamic' /\n&output sensitivities=.true., drive_forces=.true. /\n", (), DATA,
+         ['derivatives by the parameters are not computed with friction, as of friction 1. Leave out the friction, the parameters, or '
+          'sensitivities and gradients']),
         ('stop_passed', falling('low=0.5', start=drive(1, '1, -1')), (), SINGULAR,
          ['coordinate 1 passes the end of stop 1 at 0.5 m at t = 0.5 s: at t = 0.', ' m beyond. Change the drives, or move the stop']),
         ('open_chain', four_bar(ROCKER, drive(1, '120')), (), ASSEMBLY,
@@ -478,9 +482,6 @@ def free_cases():
                                 start=initial(1, 0.0, ', velocity=1')), ('--set', 'gravity.acceleration=0,0,0'), INTEGRATOR,
          ['the motion makes no progress beyond t = 1000000 s: it has had ', ' events at stops, frictions and contacts. Give a smaller '
           "restitution, a compliant stop or contact by stiffness=, or friction by law='smooth'"]),
-        ('friction_sensitivity', RUBBING + "&parameter name='m', sets='body(1).mass' /\n&output sensitivities=.true. /\n", (), DATA,
-         ['derivatives by the parameters are not computed with friction, as of friction 1. Leave out the friction, the parameters, or '
-          'sensitivities and gradients']),
         ('contact_sensitivity', SLIDING_POINT + "&parameter name='m', sets='body(1).mass' /\n&output sensitivities=.true. /\n", (), DATA,
          ['derivatives by the parameters are not computed with contacts of links, as contact 1. Leave out the contact, the parameters, or '
           'sensitivities and gradients']),

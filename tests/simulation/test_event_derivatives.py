@@ -1,7 +1,9 @@
 """Derivatives by parameters and Lyapunov exponents through the events of motions that are not smooth: impacts on stops against closed forms
-and identities, rest at stops, dependent coordinates of closed chains, drives beside them; what has no derivatives.
+and identities, rest at stops, dependent coordinates of closed chains, drives beside them; frictions that slip, turn round and stick; what
+has no derivatives.
 
 Compares the program with itself: derivatives of mechanisms with several coordinates against differences of runs."""
+import cmath
 import json
 import re
 from math import log, sqrt
@@ -95,6 +97,61 @@ CARRIAGE = """&structure cq=1,2,3 /
 &parameter name='e', sets='stop(1).restitution' /
 &parameter name='low', sets='stop(2).low' /
 """
+DRY = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&body link=2, mass=1 /
+&load kind='coordinate', coordinate=1, stiffness=1 /
+&friction coordinate=1, dynamic=1, preload=1 /
+&initial coordinate=1, position=12, velocity=6 /
+&parameter name='m', sets='body(1).mass' /
+&parameter name='k', sets='load(1).stiffness' /
+&parameter name='F', sets='friction(1).dynamic' /
+&parameter name='x', sets='initial(1).position' /
+&parameter name='v', sets='initial(1).velocity' /
+"""
+BELT = """&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&pair coordinate=2, links=2,3, kind='prismatic', axis=1,0,0 /
+&body link=3, mass=1 /
+&gravity acceleration=0,0,-9.81 /
+&drive coordinate=1, kind='polynomial', coefficients=0,0.5 /
+&friction coordinate=2, dynamic=0.3 /
+&load kind='spring', links=1,3, stiffness=10 /
+&initial coordinate=2, position=0.1, velocity=-0.8 /
+&parameter name='mu', sets='friction(1).dynamic' /
+&parameter name='m', sets='body(1).mass' /
+&parameter name='k', sets='load(1).stiffness' /
+"""
+TWO_BEARINGS = """&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point=0.5,0,0 /
+&body link=2, mass=1, centre=0.25,0,0, inertia=0,0,0.03,0,0,0 /
+&body link=3, mass=0.7, centre=0.8,0,0, inertia=0,0,0.02,0,0,0 /
+&gravity acceleration=0,-9.81,0 /
+&friction coordinate=1, dynamic=0.3, radius=0.03, preload=0.01 /
+&friction coordinate=2, dynamic=0.9, radius=0.3, preload=0.01 /
+&initial coordinate=1, position=0.2, velocity=1 /
+&initial coordinate=2, position=0.4, velocity=-2 /
+&parameter name='m', sets='body(2).mass' /
+&parameter name='l', sets='pair(2).point(1)' /
+&parameter name='r', sets='friction(2).radius' /
+"""
+SCREW = """&structure cq=1,2 /
+&pair coordinates=1,2, links=1,2, kind='cylindrical', axis=0.3,0.2,1 /
+&body link=2, mass=1, centre=0.2,0.1,0.3, inertia=0.03,0.04,0.05,0,0,0 /
+&gravity acceleration=0,-9.81,-3 /
+&friction coordinate=1, dynamic=0.2, radius=0.05 /
+&friction coordinate=2, dynamic=0.15, arm=0.2 /
+&initial coordinate=1, position=0.5, velocity=6 /
+&initial coordinate=2, position=0, velocity=2 /
+&parameter name='c', sets='body(1).centre(1)' /
+&parameter name='ax', sets='pair(1).axis(1)' /
+&parameter name='arm', sets='friction(2).arm' /
+"""
+RUBBING_BARS = FOUR_BAR.replace('&parameter', '''&friction coordinate=1, dynamic=0.2, radius=0.01 /
+&friction coordinate=3, dynamic=0.2, radius=0.02 /
+&friction coordinate=4, dynamic=0.2, radius=0.02 /
+&parameter''', 1)
 COLUMNS = '&output sensitivities=.true. /\n'
 TIGHT = '&solver relative_tolerance=1e-12, absolute_tolerance=1e-13 /\n'
 
@@ -191,6 +248,64 @@ def test_several_coordinates(checks, mech9d, tmp_path, text, columns, end, found
     output = COLUMNS.replace(' /', ', energies=.true., drive_forces=.true., reactions=.true. /') if 'F1' in columns else COLUMNS
     report = against_differences(checks, mech9d, tmp_path, text, columns, end, 6, output)
     checks.true(found in kinds(report), 'the event of the case', kinds(report))
+
+
+def dry_oscillator(end, m, k, f, x, v):
+    """Place and rate of a dry oscillator that goes forward at first, by its half swings; complex arguments give derivatives."""
+    w = cmath.sqrt(k / m)
+    centre = -f / k
+    ahead = cmath.atan(v / w / (x - centre)) / w
+    if end < ahead.real:
+        phase = w * end
+        return (centre + (x - centre) * cmath.cos(phase) + v / w * cmath.sin(phase),
+                v * cmath.cos(phase) - (x - centre) * w * cmath.sin(phase))
+    x = centre + cmath.sqrt((x - centre)**2 + (v / w)**2)
+    t = ahead
+    while abs(x) > abs(f / k):
+        centre = f / k if x.real > 0 else -f / k
+        if end < (t + cmath.pi / w).real:
+            phase = w * (end - t)
+            return centre + (x - centre) * cmath.cos(phase), -(x - centre) * w * cmath.sin(phase)
+        x = 2 * centre - x
+        t += cmath.pi / w
+    return x, 0j
+
+
+@pytest.mark.parametrize('end', [0.3, 2.0, 20.0, 25.0])
+def test_a_dry_oscillator(checks, mech9d, tmp_path, end):
+    """Before it turns round, after one half swing, after many, and at rest."""
+    table, _, _ = go(mech9d, tmp_path, DRY + COLUMNS + TIGHT, end=end)
+    at = [1.0, 1.0, 1.0, 12.0, 6.0]
+    values = dry_oscillator(end, *at)
+    step = 1e-30
+    for column, value, by in zip(('q1', 'dq1'), values, range(2)):
+        checks.near(table[column][-1], value.real, 1e-10, column, scale=10)
+        for k, name in enumerate('m k F x v'.split()):
+            slope = dry_oscillator(end, *[a + (step * 1j if i == k else 0) for i, a in enumerate(at)])[by].imag / step
+            checks.near(table[f'd({column})/d({name})'][-1], slope, 1e-9, f'{column} by {name}', scale=max(1.0, abs(slope)))
+
+
+@pytest.mark.parametrize('text, columns, end, found', ids=['belt', 'two bearings', 'cylindrical', 'four-bar', 'smooth'], argvalues=[
+    (BELT, ('q2', 'dq2'), 2.0, ('stick', 1)),
+    (TWO_BEARINGS, ('q1', 'dq1', 'q2', 'dq2', 'R1.fx', 'R1.mz', 'R2.mz'), 1.6, ('stick', 2)),
+    (SCREW, ('q1', 'dq1', 'q2', 'dq2', 'R1.fx'), 0.2, None),
+    (RUBBING_BARS, ('q1', 'dq1', 'q4', 'dq4', 'R3.fx', 'R3.mz'), 0.5, ('impact', 1)),
+    (BELT.replace('dynamic=0.3', "dynamic=0.3, law='smooth', transition=0.1"), ('q2', 'dq2', 'ddq2'), 2.0, None)])
+def test_frictions(checks, mech9d, tmp_path, text, columns, end, found):
+    """Frictions by reactions that parameters change: a block that sticks to a belt and slips again; two bearings of which one sticks while
+    the other slips; a pair that turns and slides; three bearings of a closed chain, with an impact; a smooth law."""
+    output = COLUMNS.replace(' /', ', reactions=.true. /') if any(name[0] == 'R' for name in columns) else COLUMNS
+    report = against_differences(checks, mech9d, tmp_path, text, columns, end, 5, output)
+    checks.true(found is None or found in kinds(report), 'the event of the case', kinds(report))
+
+
+def test_exponents_with_friction(checks, mech9d, tmp_path):
+    """A block on a belt sticks in each period of its limit cycle: a zero exponent along the cycle, and one of minus infinity."""
+    belt = re.sub('&parameter.*\n', '', BELT)
+    report = exponents(mech9d, tmp_path, belt, 2, 605.0, 'transient=5')
+    # tolerance: lengths change by less than a factor of e^3 within a period
+    checks.near(report['exponents'][0], 0, 3 / 600, 'along the cycle', scale=1)
+    checks.equal(report['exponents'][1], None, 'across it')
 
 
 def exponents(program, folder, text, count, end, settings):

@@ -25,6 +25,8 @@ contains
       state%motor = present%motor
       state%limited = present%limited
     end if
+    if (allocated(present%pressed)) state%pressed = present%pressed
+    if (allocated(present%friction)) state%friction = present%friction
     call place_all(plan, state, err)
     if (allocated(err)) return
     call spread_all_velocities(plan, state)

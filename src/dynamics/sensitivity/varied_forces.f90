@@ -84,6 +84,7 @@ contains
     type(varied_motion_type), intent(inout) :: motion      !< derivatives of its motion; its blocks serve as scratch
     type(varied_forces_type), intent(inout) :: self        !< gets the forces
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    integer :: i
 
     self%wrench = 0.0_wp
     self%wrenches = 0.0_wp
@@ -91,6 +92,13 @@ contains
     call add_bodies(model, motion, self)
     if (self%is_loaded) call add_loads(model, motion, self, err)
     if (allocated(err)) return
+    if (allocated(motion%friction)) then
+      do i = 1, size(motion%friction, 2)
+        associate (k => model%mechanism%frictions(i)%coordinate)
+          self%changes(:, k) = self%changes(:, k) - motion%friction(:, i)
+        end associate
+      end do
+    end if
     if (allocated(self%links)) call keep_required(motion%plan, self)
     call find_forces(motion, self)
     call hold_chains(motion%plan, motion, self)

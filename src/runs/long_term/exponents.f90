@@ -16,7 +16,7 @@ module mech9_exponents
   use mech9_partition, only: free_coordinate
   use mech9_variable_model, only: variable_model_type
   use mech9_event_failures, only: failure_event_sensitivity
-  use mech9_event_variation, only: several_impacts, no_motion_at_rest, drive_jumps
+  use mech9_event_variation, only: several_impacts, no_motion_at_rest, drive_jumps, breaks_loose
   use mech9_simulation_failures, only: failure_angles_sensitivity
   use mech9_simulation, only: interruption_type
   use mech9_sensitivity, only: sensitivity_type
@@ -85,8 +85,7 @@ contains
     end do
   end function count_states
 
-  !> Find the first exponents of a model. Fails with exit_data where nothing is free to move, or where friction or contacts do not allow
-  !> them, with exit_usage where there are not so many, and as a motion does.
+  !> Find the first exponents of a model. Fails with exit_data where nothing is free to move, or where contacts do not allow them, with exit_usage where there are not so many, and as a motion does.
   subroutine find_exponents(given, count, found, err, interruption)
     type(model_type), intent(in) :: given                            !< the model
     integer, intent(in) :: count                                     !< how many exponents are found
@@ -125,9 +124,6 @@ contains
     else if (count > states) then
       call raise(err, exit_usage, 'there are '//to_text(states)//' exponents: one for each free coordinate, rate and state of '// &
                  'a motor; ask for '//to_text(states)//' at most')
-    else if (model%mechanism%has_frictions()) then
-      call raise(err, exit_data, 'exponents are not known where pairs have friction; leave the group out, or use a damping of '// &
-                 '&load in its place', model%mechanism%frictions(1)%place)
     else if (model%mechanism%has_contacts()) then
       call raise(err, exit_data, 'exponents are not known where links may touch each other; leave the group &contact out, or '// &
                  'use a compliant &stop in its place', model%mechanism%contacts(1)%place)
@@ -457,15 +453,18 @@ contains
   subroutine explain_refusal(err)
     type(error_type), allocatable, intent(inout) :: err   !< the failure, if there is one
     real(wp) :: t
-    integer :: number
+    integer :: number, cause
+    character(len=:), allocatable :: text
 
     if (.not. allocated(err)) return
     if (.not. allocated(err%failure)) return
     t = err%failure%t
     if (err%failure%kind == failure_event_sensitivity) then
       number = err%failure%number
-      call raise(err, exit_singular, 'at t = '//to_text(t, 8)//' s '//cause_at_event(number, err%failure%limit)//', where '// &
-                 'exponents do not exist; change the start a little')
+      cause = err%failure%limit
+      text = cause_at_event(number, cause)
+      call raise(err, exit_singular, 'at t = '//to_text(t, 8)//' s '//text//', where exponents do not exist; change the '// &
+                 'start a little')
     else if (err%failure%kind == failure_angles_sensitivity) then
       call raise(err, exit_singular, 'at t = '//to_text(t, 8)//' s a ball joint comes near gimbal lock, and exponents are not '// &
                  'known in other angles; turn the axes of the joint by axis= and zero=')
@@ -483,6 +482,8 @@ contains
       text = 'stop '//to_text(number)//' is hit together with another one'
     case (no_motion_at_rest)
       text = 'the pair of friction '//to_text(number)//' comes to rest without an acceleration'
+    case (breaks_loose)
+      text = 'the pair of friction '//to_text(number)//' begins to slip by a coefficient at rest above that of sliding'
     case (drive_jumps)
       text = 'the rate of a drive jumps while a stop or friction holds a coordinate'
     case default

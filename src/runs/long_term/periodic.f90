@@ -546,6 +546,7 @@ contains
     type(error_type), allocatable, intent(inout) :: err   !< the failure, if there is one
     real(wp) :: t
     integer :: number, cause
+    character(len=:), allocatable :: text
 
     if (.not. allocated(err)) return
     if (.not. allocated(err%failure)) return
@@ -553,7 +554,8 @@ contains
     if (err%failure%kind == failure_event_sensitivity) then
       number = err%failure%number
       cause = err%failure%limit
-      call raise(err, exit_singular, 'at t = '//to_text(t, 8)//' s '//cause_at_event(number, cause)//', where '// &
+      text = cause_at_event(number, cause)
+      call raise(err, exit_singular, 'at t = '//to_text(t, 8)//' s '//text//', where '// &
                  'the derivatives by which periodic motions are found do not exist; change the start a little')
     else if (err%failure%kind == failure_angles_sensitivity) then
       call raise(err, exit_singular, 'at t = '//to_text(t, 8)//' s a ball joint comes near gimbal lock, and periodic '// &

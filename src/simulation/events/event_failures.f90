@@ -11,7 +11,8 @@ module mech9_event_failures
   integer, parameter :: failure_stop_violated = 1401
   !> An event has no derivatives by parameters: limit (1: a stop is met without a rate, 2: two impacts at once, 3: a start on a stop that
   !> parameters move, 4: a pair comes to rest without an acceleration, 5: the rate of a drive jumps, 6: quantities follow a column that
-  !> may jump), number (of the stop, for 4 of the friction), t.
+  !> may jump, 7: a pair begins to slip whose coefficient at rest is above that of sliding), number (of the stop, for 4 and 7 of the
+  !> friction), t.
   integer, parameter :: failure_event_sensitivity = 1402
   !> The start lies behind a rigid stop: number (of the stop), coordinates, values (the coordinate, its limit), name (of their unit).
   integer, parameter :: failure_stop_start = 1403

@@ -28,11 +28,13 @@ module mech9_event_variation
   use mech9_contact_equations, only: contact_equations_type, find_contact_equations
   implicit none
   private
-  public :: event_variation_type, impact_type, several_impacts, no_motion_at_rest, drive_jumps
+  public :: event_variation_type, impact_type, several_impacts, no_motion_at_rest, drive_jumps, breaks_loose
 
   !> Causes that leave an event without derivatives: the end of a stop is met without a rate; two impacts at one time; a start on a stop that a
-  !> parameter moves; a pair comes to rest without an acceleration; the rate of a drive jumps; quantities follow a column that jumps.
-  integer, parameter :: grazes = 1, several_impacts = 2, start_on_stop = 3, no_motion_at_rest = 4, drive_jumps = 5, followed = 6
+  !> parameter moves; a pair comes to rest without an acceleration; the rate of a drive jumps; quantities follow a column that jumps;
+  !> a pair begins to slip whose coefficient at rest is above that of sliding.
+  integer, parameter :: grazes = 1, several_impacts = 2, start_on_stop = 3, no_motion_at_rest = 4, drive_jumps = 5, followed = 6, &
+    breaks_loose = 7
 
   !> An impact, as the motion had it.
   type :: impact_type
@@ -53,7 +55,7 @@ module mech9_event_variation
     procedure :: begin
     procedure :: set_time
     procedure :: meet_stop
-    procedure :: come_to_rest
+    procedure :: meet_friction
     procedure :: pass_impact
     procedure :: put_behind
     procedure :: hand_on
@@ -137,20 +139,29 @@ contains
     end associate
   end subroutine meet_stop
 
-  !> Take the time at which a coordinate comes to rest, as a pair with friction that slips. Fails where it has no acceleration there.
-  subroutine come_to_rest(self, system, coordinate, number, err)
+  !> Take the time at which a pair with friction comes to rest, or begins to slip. Where its coefficients at rest and of sliding are the
+  !> same, accelerations do not jump when it begins to slip, and the time does not matter. Fails where there are no derivatives.
+  subroutine meet_friction(self, system, number, err)
     class(event_variation_type), intent(inout) :: self     !< the derivatives, at a fixed time
-    class(motion_system_type), intent(in) :: system        !< the system
-    integer, intent(in) :: coordinate                      !< number of the coordinate
+    class(motion_system_type), intent(in) :: system        !< the system before the event, with its modes of friction
     integer, intent(in) :: number                          !< of the friction
     type(error_type), allocatable, intent(out) :: err      !< allocated if there are no derivatives
+    integer :: group
 
-    if (.not. abs(self%ddq(coordinate)) > 0.0_wp) then
-      call refuse(system, no_motion_at_rest, number, err)
-    else
-      call self%set_time(-self%q(:, 1, coordinate)/self%ddq(coordinate))
-    end if
-  end subroutine come_to_rest
+    group = system%friction%modes%group(number)
+    associate (frictions => system%model%mechanism%frictions, k => system%model%mechanism%frictions(number)%coordinate)
+      if (group > 0) then
+        if (any(system%friction%modes%group == group .and. abs(frictions%static - frictions%dynamic) > 0.0_wp)) &
+          call refuse(system, breaks_loose, number, err)
+      else if (.not. abs(self%ddq(k)) > 0.0_wp) then
+        call refuse(system, no_motion_at_rest, number, err)
+      else if (follows_jumps(system, .false.)) then
+        call refuse(system, followed, 0, err)
+      else
+        call self%set_time(-self%q(:, 1, k)/self%ddq(k))
+      end if
+    end associate
+  end subroutine meet_friction
 
   !> Fail because an event has no derivatives.
   subroutine refuse(system, cause, number, err)
@@ -164,7 +175,7 @@ contains
     err%failure%number = number
     err%failure%limit = cause
     if (number == 0) return
-    if (cause == no_motion_at_rest) then
+    if (cause == no_motion_at_rest .or. cause == breaks_loose) then
       call add_place(err, place=system%model%mechanism%frictions(number)%place)
     else
       call add_place(err, place=system%model%mechanism%stops(number)%place)
@@ -186,8 +197,8 @@ contains
     integer :: i
 
     associate (ends => contacts(impact%ends))
-      if (follows_jumps(system)) then
-        call refuse(system, followed, ends(1)%stop, err)
+      if (follows_jumps(system, .true.)) then
+        call refuse(system, followed, 0, err)
         return
       end if
       if (count(.not. ends%held) > 1) then
@@ -218,19 +229,39 @@ contains
     end associate
   end subroutine pass_impact
 
-  !> Whether derivatives are wanted of quantities that follow a column between outputs, which may jump at events.
-  pure logical function follows_jumps(system)
+  !> Whether derivatives are wanted of quantities that an event disturbs between outputs: sums of columns that jump, whose time it moves,
+  !> and extremes of columns that jump or have kinks. Positions are smooth but for kinks at impacts.
+  pure logical function follows_jumps(system, rates_jump)
     class(motion_system_type), intent(in) :: system        !< the system
+    logical, intent(in) :: rates_jump                      !< rates jump, and not accelerations alone
+    logical :: sums
     integer :: i
 
     follows_jumps = .false.
     associate (request => system%model%request)
       if (.not. (request%output%gradients .and. allocated(request%quantities))) return
       do i = 1, size(request%quantities)
-        follows_jumps = follows_jumps .or. all(request%quantities(i)%take /= [character(len=5) :: 'start', 'end', 'at'])
+        associate (quantity => request%quantities(i))
+          if (any(quantity%take == [character(len=5) :: 'start', 'end', 'at'])) cycle
+          sums = any(quantity%take == [character(len=8) :: 'mean', 'rms', 'integral'])
+          if (is_position(quantity%column) .and. (sums .or. .not. rates_jump)) cycle
+          follows_jumps = .true.
+        end associate
       end do
     end associate
   end function follows_jumps
+
+  !> Whether a column is a coordinate or a component of the place of a point.
+  pure logical function is_position(column)
+    character(len=*), intent(in) :: column   !< its heading
+    integer :: n
+
+    n = len(column)
+    is_position = .false.
+    if (n < 2) return
+    is_position = column(1:1) == 'q' .and. verify(column(2:), '0123456789') == 0
+    if (index(column, '.pole.') == 0) is_position = is_position .or. any(column(n - 1:) == ['.x', '.y', '.z'])
+  end function is_position
 
   !> Give the derivatives to those of the system, so that all coordinates move along with the time of the event.
   subroutine give_to(self, system)
@@ -400,6 +431,8 @@ contains
     real(wp) :: moves(size(self%time))
     integer :: i, p
 
+    call check_start_of_slip(self, system, err)
+    if (allocated(err)) return
     do i = 1, size(ends)
       if (.not. (ends(i)%is_rigid .and. ends(i)%closed .and. ends(i)%is_stop())) cycle
       associate (sensitivity => system%sensitivity, parameters => system%model%parameters)
@@ -413,4 +446,24 @@ contains
       end associate
     end do
   end subroutine check_start
+
+  !> Fail where a pair begins to slip from rest at the start, and a parameter changes its rate: its friction would turn round.
+  subroutine check_start_of_slip(self, system, err)
+    class(event_variation_type), intent(in) :: self        !< the derivatives at the start
+    class(motion_system_type), intent(in) :: system        !< the system there
+    type(error_type), allocatable, intent(out) :: err      !< allocated where derivatives do not exist
+    integer :: i, p
+
+    if (.not. allocated(system%friction)) return
+    do i = 1, size(system%model%mechanism%frictions)
+      associate (friction => system%model%mechanism%frictions(i), parameters => system%model%parameters)
+        if (friction%is_smooth .or. abs(self%dq(friction%coordinate)) > 0.0_wp) cycle
+        do p = 1, size(self%time)
+          if (size(parameters(p)%targets) == 0 .or. .not. abs(self%q(p, 1, friction%coordinate)) > 0.0_wp) cycle
+          call refuse(system, no_motion_at_rest, i, err)
+          return
+        end do
+      end associate
+    end do
+  end subroutine check_start_of_slip
 end module mech9_event_variation

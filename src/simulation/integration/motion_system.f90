@@ -36,6 +36,7 @@ module mech9_motion_system
   use mech9_contact_motion, only: contact_motion_type, begin_contact_motion, find_contact_motion, correct_positions, correct_rates
   use mech9_variable_model, only: variable_model_type
   use mech9_motion_sensitivity, only: motion_sensitivity_type, new_motion_sensitivity
+  use mech9_varied_frictions, only: varied_frictions_type, find_varied_frictions
   implicit none
   private
   public :: motion_system_type, set_motion_system
@@ -60,6 +61,7 @@ module mech9_motion_system
     class(friction_motion_type), allocatable :: friction        !< frictions of pairs; not allocated: there are none
     class(contact_motion_type), allocatable :: contact          !< contacts of links; not allocated: there are none
     type(motion_sensitivity_type), allocatable :: sensitivity   !< derivatives by parameters, where they are integrated, too
+    class(varied_frictions_type), allocatable, private :: varied_frictions   !< those of frictions
   contains
     procedure :: make_room
     procedure :: hand_on_modes
@@ -298,11 +300,18 @@ contains
   end subroutine show_sensitivity
 
   !> Find the derivatives of the free accelerations, for a motion whose accelerations are complete.
-  subroutine vary_accelerations(self, err)
+  subroutine vary_accelerations(self, err, with_sticking)
     class(motion_system_type), intent(inout) :: self    !< the motion system
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    logical, intent(in), optional :: with_sticking      !< frictions of pairs that stick are found, too; not unless given
+    logical :: rubs
 
     call self%sensitivity%find_accelerations(self%model, self%state, self%work, err)
+    if (allocated(err) .or. .not. allocated(self%friction)) return
+    rubs = present(with_sticking) .or. self%friction%modes%any_slips() .or. any(self%model%mechanism%frictions%is_smooth)
+    if (.not. rubs) return
+    if (.not. allocated(self%varied_frictions)) allocate (self%varied_frictions)
+    call find_varied_frictions(self%model, self%plan, self%state, self%friction, self%sensitivity, self%varied_frictions, err)
   end subroutine vary_accelerations
 
   !> Take time, coordinates and free rates from a vector, and the motion of the driven coordinates from their drives. Fails where
@@ -520,7 +529,7 @@ contains
       call find_stop_forces(self%model%mechanism, self%plan, self%dynamics, self%held, self%state, self%work, err)
     if (.not. allocated(err)) call find_motor_rates(self%model%mechanism, self%state, err)
     if (.not. allocated(err)) call show_state(self%plan, self%dynamics, self%state, self%work%view)
-    if (allocated(self%sensitivity) .and. .not. allocated(err)) call vary_accelerations(self, err)
+    if (allocated(self%sensitivity) .and. .not. allocated(err)) call vary_accelerations(self, err, with_sticking=.true.)
   end subroutine show_present
 
   !> The worst block's pivot ratio at the last evaluation: 1 is best, 0 a singular position.
