@@ -186,6 +186,10 @@ int mech9_study(const mech9_mechanism *mechanism, int with_forces, int threads, 
                 mech9_results **results, mech9_error *error);
 /* Matrices second_order/M, C, K and state_space/A, B, C, D; a row with the coordinates in equilibrium. */
 int mech9_linear(const mech9_mechanism *mechanism, mech9_results **results, mech9_error *error);
+/* The same along the motion under forces, at times in its order; no times: at all outputs. A row for each time with t, q, dq and ddq,
+   and the matrices with the number of the time, from 0, before their names: 0/second_order/M. */
+int mech9_linear_at(const mech9_mechanism *mechanism, int count, const double *times, const volatile int *stop,
+                    mech9_results **results, mech9_error *error);
 /* A row for each distinct design, best first: value, parameters, coordinates at the start, starts that led to it. */
 int mech9_optimize(const mech9_mechanism *mechanism, int with_forces, int threads, const volatile int *stop,
                    mech9_results **results, mech9_error *error);

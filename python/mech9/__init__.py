@@ -16,10 +16,10 @@ from ._library import version as _version
 from ._mechanism import Check, Mechanism, Optimum, Positions, import_robot, read, read_text
 from ._pictures import Picture
 from ._procedures import Loads, Motion
-from ._results import Branches, Exponents, Gradients, Linear, Matrix, Periodic, Results, Section
+from ._results import Branches, Exponents, Gradients, Linear, LinearMotion, Matrix, Periodic, Results, Section
 from ._simulation import Simulation, Simulations
 
-__all__ = ['read', 'read_text', 'import_robot', 'Mechanism', 'Results', 'Section', 'Gradients', 'Positions', 'Check', 'Linear', 'Exponents', 'Periodic', 'Branches', 'Optimum', 'Matrix', 'Picture', 'Function',
+__all__ = ['read', 'read_text', 'import_robot', 'Mechanism', 'Results', 'Section', 'Gradients', 'Positions', 'Check', 'Linear', 'LinearMotion', 'Exponents', 'Periodic', 'Branches', 'Optimum', 'Matrix', 'Picture', 'Function',
            'Simulation', 'Simulations', 'Motion', 'Loads', 'Error', 'Finding',
            'UsageError', 'DataError', 'StructureError', 'AssemblyError', 'SingularError', 'IntegrationError', 'FileError']
 __version__ = _version()

@@ -108,6 +108,7 @@ _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     'branch': (_STATUS, [c_void_p, c_char_p, c_int, c_void_p, POINTER(c_void_p)]),
     'cam': (_STATUS, [c_void_p, c_int, POINTER(c_void_p)]),
     'study': (_STATUS, [c_void_p, c_int, c_int, c_void_p, POINTER(c_void_p)]),
+    'linear_at': (_STATUS, [c_void_p, c_int, c_void_p, c_void_p, POINTER(c_void_p)]),
     'linear': (_STATUS, [c_void_p, POINTER(c_void_p)]),
     'optimize': (_STATUS, [c_void_p, c_int, c_int, c_void_p, POINTER(c_void_p)]),
     'mechanism_design': (_STATUS, [c_void_p, c_int, c_void_p, c_void_p, POINTER(c_void_p)]),

@@ -17,7 +17,7 @@ from ._library import Handle, call, call_stoppable, count, lib, warn_of_raised
 from ._library import text as text_of
 from ._pictures import Picture, drawn
 from ._procedures import Procedure, Progress
-from ._results import Branches, Exponents, Linear, Periodic, Results, SecondOrder, StateSpace, multipliers_of
+from ._results import Branches, Exponents, Linear, LinearMotion, Periodic, Results, linear_at_rest, linear_motion, multipliers_of
 from ._words import group, run_setting, written
 
 if TYPE_CHECKING:
@@ -450,15 +450,11 @@ class Mechanism:
             data |= {f'section.{name}': ('section_point', runs.section[name]) for name in runs.section.names}
         return xarray.Dataset(data, coords={'run': runs['run'].astype(int)})
 
-    def linear(self) -> Linear:
-        """The equations of motion linearised about the equilibrium to which the start leads."""
-        found = self._results(lib.linear, lambda m, stop, out: (m, out))
-        second = {name[-1]: matrix.values for name, matrix in found.matrices.items() if name.startswith('second_order/')}
-        space = {name[-1]: matrix for name, matrix in found.matrices.items() if name.startswith('state_space/')}
-        return Linear(found.table[0], found.matrices['second_order/M'].rows, SecondOrder(**second), StateSpace(
-            **{name: matrix.values for name, matrix in space.items()},
-            states=space['A'].rows, state_units=space['A'].row_units, inputs=space['B'].columns, input_units=space['B'].column_units,
-            outputs=space['C'].rows, output_units=space['C'].row_units))
+    def linear(self, at: float | str | Sequence[float] | np.ndarray | None = None) -> Linear | LinearMotion:
+        """The equations of motion linearised about the equilibrium to which the start leads; or, at a time, times in order or 'outputs', about the motion."""
+        if at is None:
+            return linear_at_rest(self._results(lib.linear, lambda m, stop, out: (m, out)))
+        return linear_motion(at, lambda times: self._results(lib.linear_at, lambda m, stop, out: (m, len(times), times.ctypes.data, stop, out)))
 
     def optimize(self, *, threads: int = 1, dynamics: bool | None = None, progress: Callable[[float], Any] | None = None,
                  **words: Any) -> Optimum:

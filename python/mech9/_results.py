@@ -329,6 +329,53 @@ class Linear:
 
 
 @dataclass(frozen=True)
+class LinearMotion(Linear):
+    """The linearised equations of motion about a motion: deviations from it go on by them. At several times t all arrays have these as first
+    dimension; names do not. dq and ddq are rates and accelerations of the motion."""
+    t: np.ndarray | float
+    dq: np.ndarray
+    ddq: np.ndarray
+
+
+def _linear_parts(of_time: Sequence[Mapping[str, Matrix]], alone: bool) -> tuple[tuple[str, ...], SecondOrder, StateSpace]:
+    """The free coordinates and both forms of linearised equations, from matrices by name: those of one time alone, or over times."""
+    def over_time(name: str) -> np.ndarray:
+        return of_time[0][name].values if alone else np.stack([matrices[name].values for matrices in of_time])
+    a, b, c = (of_time[0][f'state_space/{name}'] for name in 'ABC')
+    return of_time[0]['second_order/M'].rows, SecondOrder(*(over_time(f'second_order/{name}') for name in 'MCK')), StateSpace(
+        *(over_time(f'state_space/{name}') for name in 'ABCD'), states=a.rows, state_units=a.row_units, inputs=b.columns,
+        input_units=b.column_units, outputs=c.rows, output_units=c.row_units)
+
+
+def linear_at_rest(found: Results) -> Linear:
+    """The matrices of an equilibrium."""
+    free, second_order, state_space = _linear_parts([found.matrices], True)
+    return Linear(found.table[0], free, second_order, state_space)
+
+
+def linear_motion(at: Any, find: Callable[[np.ndarray], Results]) -> LinearMotion:
+    """The matrices of a motion, whose names begin with the number of the time; those of a single time are without this dimension."""
+    found, alone = find(_times_along(at)), np.ndim(at) == 0 and not isinstance(at, str)
+    of_time: list[dict[str, Matrix]] = [{} for _ in found.table]
+    for name, matrix in found.matrices.items():
+        number, _, rest = name.partition('/')
+        of_time[int(number)][rest] = matrix
+    m = (found.table.shape[1] - 1) // 3
+    t, q, dq, ddq = (found.table[0, part] if alone else found.table[:, part]
+                     for part in (0, slice(1, m + 1), slice(m + 1, 2 * m + 1), slice(2 * m + 1, None)))
+    free, second_order, state_space = _linear_parts(of_time, alone)
+    return LinearMotion(q, free, second_order, state_space, t, dq, ddq)
+
+
+def _times_along(at: Any) -> np.ndarray:
+    """The times that `at` asks for; none for all outputs."""
+    times = np.ascontiguousarray([] if isinstance(at, str) else np.atleast_1d(at), dtype=float)
+    if at != 'outputs' if isinstance(at, str) else times.ndim != 1 or not times.size or not np.isfinite(times).all():
+        raise UsageError(f"at is a time, times in the order of the motion, or 'outputs', not {at!r}", 2)
+    return times
+
+
+@dataclass(frozen=True)
 class Exponents:
     """The Lyapunov exponents [1/s], largest first, with their standard errors; the means over the times up to t, `history` (times, exponents)."""
     values: np.ndarray

@@ -2,8 +2,8 @@
 module mech9_api_analyses
   use, intrinsic :: iso_c_binding, only: c_int, c_ptr, c_null_ptr
   use mech9, only: wp, error_type, finding_type, mechanism_type, run_type, rest_type, study_type, optimum_type, &
-    linear_system_type, exponents_found_type, find_motion_exponents, &
-    judge_mobility, list_assemblies, list_ranges, name_coordinates, find_linear_system, find_cam, draw_sketch, &
+    exponents_found_type, find_motion_exponents, &
+    judge_mobility, list_assemblies, list_ranges, name_coordinates, find_cam, draw_sketch, &
     draw_film, exit_file, exit_data, exit_structure, exit_interrupted, kinematics, dynamics
   use mech9_api_text, only: c_text_type, read_c_text
   use mech9_api_error, only: begin_call, end_call
@@ -414,48 +414,6 @@ contains
     call put_section(names, points, units, found)
     runs_of = show_results(found)
   end function runs_of
-
-  !> Linearise the equations of motion about the equilibrium to which the start leads: the matrices second_order/M, C, K and
-  !> state_space/A, B, C, D, and a row with the coordinates in equilibrium.
-  integer(c_int) function find_linear(mechanism, results, error) bind(c, name='mech9_linear') result(code)
-    type(c_ptr), value, intent(in) :: mechanism   !< the mechanism
-    type(c_ptr), intent(out) :: results           !< the matrices; null after a failure
-    type(c_ptr), value, intent(in) :: error       !< handle of errors, or null
-    type(mechanism_type), pointer :: resting
-    type(linear_system_type) :: system
-    type(results_type), pointer :: found
-    character(len=:), allocatable :: names(:), units(:)
-    real(wp), allocatable :: sizes(:)
-    type(error_type), allocatable :: err
-    integer :: n
-
-    call begin_call(error)
-    results = c_null_ptr
-    call find_mechanism(mechanism, resting, err)
-    if (.not. allocated(err)) call find_linear_system(resting, system, err)
-    if (.not. allocated(err)) call name_coordinates(resting, names, units, sizes, err)
-    if (.not. allocated(err)) then
-      allocate (found)
-      call put_texts(names, found%names)
-      call put_texts(units, found%units)
-      allocate (found%rows(size(names), 1))
-      found%rows(:, 1) = system%q/sizes
-      found%count = 1
-      allocate (found%matrices(7))
-      n = size(system%free)
-      associate (m => found%matrices, s => system, free => system%states(:n), units_of_free => system%state_units(:n))
-        call put_matrix('second_order/M', s%inertia, free, units_of_free, free, units_of_free, m(1))
-        call put_matrix('second_order/C', s%damping, free, units_of_free, free, units_of_free, m(2))
-        call put_matrix('second_order/K', s%stiffness, free, units_of_free, free, units_of_free, m(3))
-        call put_matrix('state_space/A', s%space%a, s%states, s%state_units, s%states, s%state_units, m(4))
-        call put_matrix('state_space/B', s%space%b, s%states, s%state_units, s%inputs, s%input_units, m(5))
-        call put_matrix('state_space/C', s%space%c, s%outputs, s%output_units, s%states, s%state_units, m(6))
-        call put_matrix('state_space/D', s%space%d, s%outputs, s%output_units, s%inputs, s%input_units, m(7))
-      end associate
-      results = show_results(found)
-    end if
-    code = end_analysis(error, err, resting, dynamics)
-  end function find_linear
 
   !> Search for the best design: a row for each distinct design, best first, with its value, its parameters, its coordinates at the
   !> start, and the number of starts that led to it. The number made tells how many starts were made.

@@ -9,7 +9,7 @@ module mech9_api_results
   use mech9_api_text, only: c_text_type
   implicit none
   private
-  public :: results_type, show_results, find_results, put_texts, put_matrix
+  public :: results_type, matrix_type, show_results, find_results, put_texts, put_matrix
 
   !> A matrix with names for its rows and columns.
   type :: matrix_type

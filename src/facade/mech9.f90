@@ -22,7 +22,7 @@ module mech9
   use mech9_recorded_run, only: run_type => recorded_run_type
   use mech9_recorded_study, only: study_type => recorded_study_type
   use mech9_recorded_rest, only: rest_type => recorded_rest_type
-  use mech9_recorded_linear, only: linear_system_type, find_linear_system
+  use mech9_recorded_linear, only: linear_system_type, find_linear_system, linear_along_type, find_linear_along
   use mech9_recorded_branches, only: find_position_branches
   use mech9_recorded_exponents, only: exponents_found_type, find_motion_exponents
   use mech9_recorded_cam, only: find_cam
@@ -34,12 +34,12 @@ module mech9
   private
   public :: wp, kinematics, dynamics, string_type
   public :: mechanism_type, finding_type, read_file, read_text, parse_file, parse_text, design_type
-  public :: motion_type, run_type, study_type, rest_type, optimum_type, positions_type, linear_system_type, exponents_found_type
+  public :: motion_type, run_type, study_type, rest_type, optimum_type, positions_type, linear_system_type, linear_along_type, &
+    exponents_found_type
   public :: motion_view_type, force_sum_type
   public :: interruption_type, simulation_statistics_type, coordinate_change_type, motion_event_type
-  public :: judge_mobility, list_assemblies, list_ranges, name_coordinates, find_linear_system, find_motion_exponents, &
-    find_position_branches, find_cam, &
-    draw_sketch, draw_film
+  public :: judge_mobility, list_assemblies, list_ranges, name_coordinates, find_linear_system, find_linear_along, &
+    find_motion_exponents, find_position_branches, find_cam, draw_sketch, draw_film
   public :: error_type, exit_usage, exit_data, exit_structure, exit_assembly, exit_singular, exit_integrator, exit_file, &
     exit_interrupted
 end module mech9

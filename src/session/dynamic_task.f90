@@ -12,6 +12,7 @@ module mech9_dynamic_task
   use mech9_exponents_task, only: work_on_exponents
   use mech9_periodic_task, only: work_on_periodic
   use mech9_branch_task, only: work_on_branches
+  use mech9_linear_task, only: work_on_linear_motion
   use mech9_law_times, only: check_times_of_laws
   use mech9_task, only: task_type, answers_only, print_check, check_motion
   use mech9_check_text, only: print_given
@@ -57,6 +58,11 @@ contains
 
     if (asks_for_equilibrium(options)) then
       call find_rest(options, model, diagnostics, reported, kept)
+      return
+    end if
+    if (options%has('at')) then
+      reported = .false.
+      call work_on_linear_motion(options, model, diagnostics)
       return
     end if
     if (options%has('exponents')) then

@@ -38,7 +38,7 @@ module mech9_equilibrium_task
   use mech9_version, only: version
   implicit none
   private
-  public :: asks_for_equilibrium, find_rest
+  public :: asks_for_equilibrium, find_rest, begin_file, end_file
 
   !> Pictures of one period, and the amplitude of the largest free coordinate in them [rad, lengths of the mechanism].
   integer, parameter :: pictures_of_period = 49

@@ -416,6 +416,34 @@ print('done')
         assert done.stdout == 'done\n', done.stderr
 
 
+def test_linear_along_a_motion(checks, build, mech9, tmp_path):
+    """The matrices of --linear --at, at one time, at several, and at all outputs."""
+    import h5py
+    path = os.path.join(TREE, 'examples', 'double_pendulum', 'double_pendulum.nml')
+    m = mech9.read(path)
+    done = run(build.program('mech9d'), path, '--quiet', '--linear', str(tmp_path / 'a.h5'), '--at', '0,0.5,1.5')
+    checks.equal(done.returncode, 0, done.stderr)
+    along = m.linear(at=[0, 0.5, 1.5])
+    checks.equal(along.free, ('q1', 'q2'), 'free coordinates')
+    with h5py.File(tmp_path / 'a.h5') as file:
+        for ours, theirs in ((along.t, 'time'), (along.q, 'q'), (along.dq, 'dq'), (along.ddq, 'ddq'), (along.second_order.M, 'second_order/M'),
+                             (along.second_order.C, 'second_order/C'), (along.second_order.K, 'second_order/K'),
+                             (along.state_space.A, 'state_space/A'), (along.state_space.B, 'state_space/B'),
+                             (along.state_space.C, 'state_space/C'), (along.state_space.D, 'state_space/D')):
+            checks.equal(ours.shape, file[theirs].shape, theirs)
+            checks.true(np.array_equal(ours, file[theirs][()]), f'{theirs}: the same numbers')
+    alone = m.linear(at=0.0)
+    checks.true(alone.t == 0 and np.array_equal(alone.state_space.A, along.state_space.A[0]) and np.array_equal(alone.q, along.q[0]), 'one time')
+    checks.equal(alone.state_space.states, ('q1', 'q2', 'dq1', 'dq2'), 'states')
+    checks.near(m.linear(at='outputs').t, np.linspace(0, 5, 201), 1e-15, 'all outputs')
+    checks.near(m.linear(at=np.array([0.5])).state_space.A, along.state_space.A[1:2], 1e-9, 'one time in a list')
+    for wrong in ('often', [], [[0.1]], float('nan'), [0.2, 0.1], 9.0):
+        with pytest.raises(mech9.UsageError):
+            m.linear(at=wrong)
+    with pytest.raises(mech9.DataError):
+        mech9.read(os.path.join(TREE, 'examples', 'block_on_belt', 'block_on_belt.nml')).linear(at=0.0)
+
+
 def test_reports(checks, build, mech9, four_bar):
     """The report of a run is that of the program, but for what differs from run to run."""
     from mech9_cases import report_of

@@ -123,6 +123,8 @@ contains
         call parse('--import|a.urdf|'//trim(word), options, err)
       else if (any(name == [character(len=8) :: 'part', 'threads', 'continue'])) then
         call parse('a.nml|--study|'//trim(word), options, err)
+      else if (name == 'at') then
+        call parse('a.nml|--linear|a.h5|'//trim(word), options, err, program)
       else if (name == 'mode') then
         call parse('a.nml|--modes|--animate|a.svg|'//trim(word), options, err, program)
       else

@@ -13,7 +13,8 @@ module mech9_option_conflicts
   character(len=*), parameter :: of_rest(*) = [character(len=11) :: 'equilibrium', 'modes', 'linear']
   !> Options that a conversation does not take.
   character(len=*), parameter :: of_files(*) = [character(len=11) :: 'check', 'structure', 'plan', 'branches', 'range', 'cam', &
-                                                'equilibrium', 'modes', 'linear', 'exponents', 'periodic', 'branch', 'study', &
+                                                'equilibrium', 'modes', 'linear', 'at', 'exponents', 'periodic', 'branch', &
+                                                'study', &
                                                 'optimize', 'dakota', 'set']
 
 contains
@@ -27,12 +28,13 @@ contains
   end function answer_of
 
   !> The option that asks for positions of equilibrium in place of a run, the first one where there are several; empty where none is
-  !> given.
+  !> given, and where --at asks for a motion.
   pure function rest_of(given) result(name)
     character(len=*), intent(in) :: given(:)  !< names of the options that are given, without the dashes
     character(len=:), allocatable :: name
 
-    name = first_of(of_rest, given)
+    name = ''
+    if (all(given /= 'at')) name = first_of(of_rest, given)
   end function rest_of
 
   !> The first one of some names that is given; empty where none is.
@@ -74,6 +76,8 @@ contains
       call raise(err, exit_usage, '--quiet and --verbose contradict each other')
     else if (has('no-write') .and. (has('table') .or. has('hdf5') .or. has('plot') .or. has('linear'))) then
       call raise(err, exit_usage, '--no-write contradicts --table, --hdf5, --plot and --linear')
+    else if (has('at') .and. .not. has('linear')) then
+      call raise(err, exit_usage, '--at gives the times of a motion at which --linear FILE.h5 linearises; give both')
     else if (has('mode') .neqv. (has('modes') .and. has('animate'))) then
       call judge_mode(has('mode'), err)
     else if (has('modes') .and. has('equilibrium')) then
@@ -89,6 +93,8 @@ contains
       call judge_study(given, err)
     else if (has('optimize')) then
       call judge_optimum(given, err)
+    else if (has('at')) then
+      call judge_linear_motion(given, err)
     else if (has('exponents')) then
       call judge_exponents(given, err)
     else if (has('branch')) then
@@ -263,6 +269,25 @@ contains
       return
     end do
   end subroutine judge_branch
+
+  !> Fail because of options that have no meaning beside --linear with --at.
+  pure subroutine judge_linear_motion(given, err)
+    character(len=*), intent(in) :: given(:)           !< names of the options that are given, without the dashes
+    type(error_type), allocatable, intent(out) :: err  !< allocated if there are any
+    character(len=*), parameter :: allowed(*) = [character(len=6) :: 'linear', 'at', 'report', 'quiet', 'set']
+    integer :: i
+
+    do i = 1, size(given)
+      if (any(given(i) == allowed)) cycle
+      if (any(given(i) == answers)) then
+        call raise(err, exit_usage, '--'//trim(given(i))//' and --linear with --at are two tasks; give one of them')
+      else
+        call raise(err, exit_usage, '--'//trim(given(i))//' has no meaning beside --linear with --at, which writes matrices '// &
+                   'alone; leave one of them out')
+      end if
+      return
+    end do
+  end subroutine judge_linear_motion
 
   !> Check the options of a conversation: it takes one data file or none, and no option that replaces the run by an answer.
   pure subroutine judge_conversation(program, given, has_file, err)

@@ -44,6 +44,8 @@ module mech9_options
                 'the mode of --modes that --animate shows'), &
     option_type('linear', needed_argument, 'FILE.h5', any_text, .false., dynamics, &
                 'write the linearised equations of motion there as matrices'), &
+    option_type('at', needed_argument, 'TIMES', any_text, .false., dynamics, &
+                'times of --linear along the motion, not at rest: 0.1,0.3 or outputs'), &
     option_type('exponents', needed_argument, 'K', whole_number, .false., dynamics, &
                 'find the K largest Lyapunov exponents of the motion'), &
     option_type('periodic', no_argument, '', any_text, .false., dynamics, &

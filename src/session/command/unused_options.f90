@@ -25,7 +25,7 @@ contains
     name = program_names(options%program)
     answer = options%answer()
     ! options without effect are refused there
-    if (options%rest() /= '' .or. options%has('exponents') .or. options%has('branch')) then
+    if (options%rest() /= '' .or. options%has('exponents') .or. options%has('branch') .or. options%has('at')) then
       if (options%has('sketch') .or. options%has('animate')) call print_idle_arrows(unit, options, model)
       return
     end if

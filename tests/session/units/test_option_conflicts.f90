@@ -68,13 +68,14 @@ contains
     call tester%is_true(answer_of(none) == '' .and. rest_of(none) == '', 'no options')
     call tester%is_true(answer_of(names_in('table plan check')) == 'check', 'the first one of the answers, whatever the order')
     call tester%is_true(answer_of(names_in('modes structure')) == 'structure', 'the structure comes first')
-    call tester%is_true(rest_of(names_in('linear modes')) == 'modes' .and. rest_of(names_in('check')) == '', 'rest')
+    call tester%is_true(rest_of(names_in('linear modes')) == 'modes' .and. rest_of(names_in('check')) == '' &
+                        .and. rest_of(names_in('linear at')) == '', 'rest')
   end subroutine answers
 
   !> Each option alone is good, but for those that belong to others.
   subroutine good_options(tester)
     type(tester_type), intent(inout) :: tester   !< counts the checks
-    character(len=*), parameter :: partners(9) = [character(len=12) :: 'part', 'threads', 'continue', 'mode', 'out', 'merge', &
+    character(len=*), parameter :: partners(10) = [character(len=12) :: 'part', 'threads', 'continue', 'mode', 'at', 'out', 'merge', &
                                                   'dakota', 'import', 'edit']
     integer :: i
 
@@ -85,6 +86,7 @@ contains
     call accepted(tester, 'study part threads continue table', .true.)
     call accepted(tester, 'modes mode animate view', .true.)
     call accepted(tester, 'equilibrium starts', .true.)
+    call accepted(tester, 'linear at set quiet report', .true.)
     call accepted(tester, 'merge merge hdf5 table quiet', .false.)
     call accepted(tester, 'import out quiet', .false.)
     call accepted(tester, 'optimize out animate plot', .true.)
@@ -135,6 +137,9 @@ contains
 
     call refused(tester, 'mode', '--mode tells which mode --modes --animate FILE shows')
     call refused(tester, 'modes animate', 'tell which by --mode K')
+    call refused(tester, 'at', '--at gives the times of a motion at which --linear FILE.h5 linearises; give both')
+    call refused(tester, 'linear at modes', '--modes and --linear with --at are two tasks')
+    call refused(tester, 'linear at table', '--table has no meaning beside --linear with --at')
     call refused(tester, 'modes equilibrium', '--equilibrium and --modes write different tables')
     call refused(tester, 'modes check', '--check and --modes are two tasks')
     call refused(tester, 'equilibrium plot', '--plot shows a run')

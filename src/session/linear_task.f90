@@ -1,0 +1,80 @@
+!> The work of mech9d for --linear with --at: the linearised equations of motion along a motion.
+module mech9_linear_task
+  use, intrinsic :: iso_fortran_env, only: error_unit
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type, raise, exit_usage
+  use mech9_text, only: to_text
+  use mech9_counted, only: counted
+  use mech9_numeral, only: numeral_type, read_numeral
+  use mech9_command_line, only: command_line_type
+  use mech9_diagnostics, only: diagnostics_type
+  use mech9_model, only: model_type
+  use mech9_linear_motion, only: linear_motion_type, find_linear_motion
+  use mech9_hdf5_file, only: hdf5_file_type
+  use mech9_linear_file, only: put_linear_motion
+  use mech9_equilibrium_task, only: begin_file, end_file
+  use mech9_signal_interruption, only: signal_interruption_type
+  use mech9_law_times, only: check_times_of_laws
+  implicit none
+  private
+  public :: work_on_linear_motion
+
+  !> The word that stands for all times of the results.
+  character(len=*), parameter :: all_outputs = 'outputs'
+
+contains
+
+  !> Follow the motion, and write the matrices at the times of --at.
+  subroutine work_on_linear_motion(options, model, diagnostics)
+    type(command_line_type), intent(in) :: options          !< the command line
+    type(model_type), intent(in) :: model                   !< the model
+    type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
+    type(linear_motion_type) :: found
+    type(hdf5_file_type) :: file
+    type(error_type), allocatable :: err
+    real(wp), allocatable :: times(:)
+
+    call check_times_of_laws(model, .true., diagnostics)
+    if (diagnostics%failed()) return
+    call read_times(options%argument('at'), times, err)
+    if (.not. allocated(err)) call find_linear_motion(model, times, found, err, signal_interruption_type())
+    if (.not. allocated(err)) &
+      call begin_file(options%argument('linear'), options, model, diagnostics%sources(1)%text, file, err)
+    if (.not. allocated(err)) then
+      call put_linear_motion(file, model, found)
+      call end_file(file, err)
+    end if
+    if (allocated(err)) then
+      call diagnostics%add_error(err)
+    else if (.not. options%has('quiet')) then
+      if (model%mechanism%title /= '') write (error_unit, '(a)') model%mechanism%title
+      write (error_unit, '(a)') 'linearised equations of motion at '//counted(size(found%times), 'time')// &
+        ' of the motion, from t = '//to_text(found%times(1)%t, 6)//' s to '// &
+        to_text(found%times(size(found%times))%t, 6)//' s: '//options%argument('linear')
+    end if
+  end subroutine work_on_linear_motion
+
+  !> Read the times of --at: numbers with commas, or the word for all results, for which none is listed.
+  pure subroutine read_times(text, times, err)
+    character(len=*), intent(in) :: text                !< the argument
+    real(wp), allocatable, intent(out) :: times(:)      !< [s]
+    type(error_type), allocatable, intent(out) :: err   !< allocated where it is something else
+    type(numeral_type) :: numeral
+    integer :: first, last
+
+    allocate (times(0))
+    if (text == all_outputs) return
+    first = 1
+    do while (first <= len(text) + 1)
+      last = index(text(first:)//',', ',') + first - 2
+      call read_numeral(trim(adjustl(text(first:last))), numeral)
+      if (allocated(numeral%problem)) then
+        call raise(err, exit_usage, '--at has times with commas, as 0.1,0.3, or the word '//all_outputs//'; '''//text// &
+                   ''' is neither')
+        return
+      end if
+      times = [times, numeral%number]
+      first = last + 2
+    end do
+  end subroutine read_times
+end module mech9_linear_task
