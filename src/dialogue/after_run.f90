@@ -10,11 +10,12 @@ module mech9_after_run
   use mech9_rows_text, only: rows_text, all_rows_text, columns_that_fit, all_digits
   use mech9_run_comparison, only: comparison_type, compare_runs, comparison_text
   use mech9_plot, only: plot_columns
-  use mech9_part_names, only: number_columns
+  use mech9_part_names, only: number_columns, name_column
   use mech9_heading, only: new_heading
   use mech9_plot_request, only: is_picture
   use mech9_grammar, only: words_of
-  use mech9_draft, only: integer_of
+  use mech9_draft, only: draft_type, integer_of
+  use mech9_known_names, only: add_known_names, add_word
   use mech9_conversation, only: conversation_type, going
   use mech9_correcting, only: change
   implicit none
@@ -57,7 +58,7 @@ contains
 
     with_rest = conversation%program == dynamics
     with_study = conversation%interview%draft%count_of('study') > 0
-    call words_here(kept, with_rest, words)
+    call words_here(kept, conversation%interview%draft, with_rest, words)
     prompt = '  show, plot, compare, change, run or done'
     if (with_rest) prompt = '  show, plot, compare, equilibrium, modes, change, run or done'
     if (with_study) prompt = prompt(:index(prompt, 'change') - 1)//'study, '//prompt(index(prompt, 'change'):)
@@ -138,23 +139,28 @@ contains
     request = '--'//word//starts//sketch
   end subroutine ask_for_rest
 
-  !> List the words that can be completed: the commands and the names of the columns.
-  pure subroutine words_here(kept, with_rest, words)
+  !> List the words that can be completed: the commands, the columns by numbers and by names, and the names of the data file.
+  pure subroutine words_here(kept, draft, with_rest, words)
     type(kept_rows_type), intent(in) :: kept                 !< results of the last run
+    type(draft_type), intent(in) :: draft                    !< the data file
     logical, intent(in) :: with_rest                         !< the program answers about equilibrium
     type(string_type), allocatable, intent(out) :: words(:)  !< the commands and the names of the columns
-    integer :: i, n, n_commands
+    character(len=:), allocatable :: column
+    integer :: i
 
-    n = 0
-    if (kept%count > 0) n = size(kept%names)
-    n_commands = size(commands) - merge(0, 2, with_rest)
-    allocate (words(n_commands + n))
-    do i = 1, n_commands
-      words(i)%text = trim(commands(i))
+    allocate (words(0))
+    do i = 1, size(commands) - merge(0, 2, with_rest)
+      call add_word(trim(commands(i)), words)
     end do
-    do i = 1, n
-      words(n_commands + i)%text = kept%names(i)%text
-    end do
+    if (kept%count > 0) then
+      do i = 1, size(kept%names)
+        call add_word(kept%names(i)%text, words)
+        column = kept%names(i)%text
+        call name_column(kept%parts, column)
+        call add_word(column, words)
+      end do
+    end if
+    call add_known_names(draft, words)
   end subroutine words_here
 
   !> Tell the user the names of the columns.

@@ -32,7 +32,7 @@ contains
     question = conversation%interview%due()
     call announce_topic(conversation, question)
     call introduce(conversation, question, default, prompt)
-    call words_for(question, conversation%interview%outline, words)
+    call words_for(question, conversation%interview%draft, conversation%interview%outline, words)
     call conversation%listen(prompt, words, line)
     if (conversation%state /= going) return
     select case (lower(line(:min(len(line), 8))))

@@ -16,7 +16,7 @@ module mech9_closing
   use mech9_outline, only: drop_empty_guesses
   use mech9_summary, only: print_summary
   use mech9_conversation, only: conversation_type, going, finished
-  use mech9_correcting, only: show_faults, change, correction_help
+  use mech9_correcting, only: show_faults, change, correction_help, correction_words
   implicit none
   private
   public :: close_conversation, write_data_file
@@ -34,16 +34,12 @@ contains
   subroutine close_conversation(conversation, run_path)
     class(conversation_type), intent(inout) :: conversation   !< the conversation as it stands
     character(len=:), allocatable, intent(inout) :: run_path  !< data file to be run then; empty: none
-    type(string_type) :: words(5)
+    type(string_type), allocatable :: words(:)
     character(len=:), allocatable :: line
     logical :: done
 
     call show_all(conversation)
-    words(1)%text = 'add'
-    words(2)%text = 'remove'
-    words(3)%text = 'list'
-    words(4)%text = 'back'
-    words(5)%text = 'quit'
+    words = correction_words('', conversation%interview%draft)
     call conversation%listen('  number of an answer to change, Enter if all is right: ', words, line)
     if (conversation%state /= going) return
     select case (lower(line(:min(len(line), 8))))

@@ -7,11 +7,13 @@ module mech9_correcting
   use mech9_questions, only: label_of, find_question, ask_item
   use mech9_question_words, only: is_lacking
   use mech9_summary, only: number_of_entry, entry_meant, title_of
+  use mech9_draft, only: draft_type
+  use mech9_known_names, only: add_known_names, add_word
   use mech9_conversation, only: conversation_type, going
   use mech9_taking, only: take_answer
   implicit none
   private
-  public :: show_faults, offer_correction, change, correction_help
+  public :: show_faults, offer_correction, change, correction_help, correction_words
 
   integer, parameter :: most_shown = 5
   character(len=*), parameter :: correction_help = &
@@ -46,12 +48,12 @@ contains
     class(conversation_type), intent(inout) :: conversation !< the conversation as it stands
     type(fault_type), intent(in) :: faults(:)         !< errors, each with its entry in the draft
     character(len=*), intent(in) :: otherwise         !< label of the question that Enter takes where no answer is known to be wrong
-    type(string_type) :: words(6)
+    type(string_type), allocatable :: words(:)
     character(len=:), allocatable :: line, proposal
     integer :: first, missing
     logical :: done
 
-    words = correction_words()
+    words = correction_words('go', conversation%interview%draft)
     call find_first(conversation, faults, first, missing)
     proposal = otherwise(index(otherwise, '.') + 1:)
     if (missing > 0) proposal = label_of(conversation%interview%questions(missing))
@@ -99,15 +101,19 @@ contains
   end subroutine take_otherwise
 
   !> The words that can be completed in a correction.
-  function correction_words() result(words)
-    type(string_type) :: words(6)
+  pure function correction_words(first, draft) result(words)
+    character(len=*), intent(in) :: first        !< a command beside those of all corrections; empty: none
+    type(draft_type), intent(in) :: draft        !< the data file so far, whose names are offered, too
+    type(string_type), allocatable :: words(:)
+    character(len=6), parameter :: commands(5) = [character(len=6) :: 'add', 'remove', 'list', 'back', 'quit']
+    integer :: i
 
-    words(1)%text = 'go'
-    words(2)%text = 'add'
-    words(3)%text = 'remove'
-    words(4)%text = 'list'
-    words(5)%text = 'back'
-    words(6)%text = 'quit'
+    allocate (words(0))
+    call add_word(first, words)
+    do i = 1, size(commands)
+      call add_word(trim(commands(i)), words)
+    end do
+    call add_known_names(draft, words)
   end function correction_words
 
   !> Find the first answer that is wrong, and the first question that lacks its answer; 0 if there is none.

@@ -3,12 +3,38 @@ module mech9_completion
   use mech9_text, only: string_type, starts_with
   implicit none
   private
-  public :: beginning_of_word, completions, common_beginning, in_columns
+  public :: find_completions, beginning_of_word, completions, common_beginning, in_columns
 
   !> The characters between words at a prompt.
-  character(len=*), parameter :: separators = ' ,='//achar(9)//achar(39)//achar(34)
+  character(len=*), parameter :: quotes = achar(39)//achar(34), separators = ' ,='//achar(9)//quotes
+  !> The characters between names in a formula.
+  character(len=*), parameter :: operators = '(+-*/^'
 
 contains
+
+  !> Find what can follow the text before the cursor: the words that begin as its end does, how much of them is typed, and what
+  !> stands behind a word that is complete. Within a formula a name begins behind its last operator.
+  pure subroutine find_completions(text, words, found, typed, ending)
+    character(len=*), intent(in) :: text                     !< the line up to the cursor
+    type(string_type), intent(in) :: words(:)                !< the words offered
+    type(string_type), allocatable, intent(out) :: found(:)  !< those that fit, in their order
+    integer, intent(out) :: typed                            !< letters of them that stand before the cursor
+    character, intent(out) :: ending                         !< a blank, or the quote that stands before the word
+    character(len=:), allocatable :: beginning
+    integer :: before
+
+    beginning = beginning_of_word(text)
+    call completions(words, beginning, found)
+    if (size(found) == 0 .and. scan(beginning, operators) > 0) then
+      beginning = beginning(scan(beginning, operators, back=.true.) + 1:)
+      call completions(words, beginning, found)
+    end if
+    typed = len(beginning)
+    ending = ' '
+    before = len(text) - typed
+    if (before < 1) return
+    if (scan(text(before:before), quotes) == 1) ending = text(before:before)
+  end subroutine find_completions
 
   !> The word being typed at the end of a text; empty where none is.
   pure function beginning_of_word(text) result(beginning)

@@ -9,7 +9,7 @@ module mech9_libedit_editor
   use mech9_text, only: string_type
   use mech9_system, only: standard_input, standard_error
   use mech9_input_bytes, only: input_bytes_type, input_read, input_ended, input_interrupted
-  use mech9_completion, only: beginning_of_word, completions, common_beginning, in_columns
+  use mech9_completion, only: find_completions, common_beginning, in_columns
   use mech9_wide_text, only: to_wide, to_bytes, code_point, unknown_character
   use mech9_libedit, only: el_init, el_end, el_wset, el_wget, el_wgets, el_wline, el_winsertstr, &
                            history_winit, history_wend, history_w, c_dup, c_fdopen, c_fclose, c_setlocale, &
@@ -267,23 +267,23 @@ contains
   end subroutine read_character
 
   !> Insert the letters that all fitting words have in common, or list these words where there are none. libedit calls this
-!> function for the key Tab.
+  !> function for the key Tab.
   integer(c_signed_char) function complete_word(editor, key) bind(c)
     type(c_ptr), value :: editor  !< address of the editor
     integer(c_int), value :: key  !< code of the key, not used
     type(box_type), pointer :: box
     type(string_type), allocatable :: found(:)
-    character(len=:), allocatable :: beginning, common
-    integer :: answer
+    character(len=:), allocatable :: common
+    character :: ending
+    integer :: answer, typed
 
     box => box_of(editor)
-    beginning = beginning_of_word(line_to_cursor(editor))
-    call completions(box%words, beginning, found)
+    call find_completions(line_to_cursor(editor), box%words, found, typed, ending)
     common = common_beginning(found)
     answer = cc_error
-    if (size(found) == 1) common = common//' '
-    if (len(common) > len(beginning)) then
-      if (el_winsertstr(editor, to_wide(common(len(beginning) + 1:))) == 0) answer = cc_refresh
+    if (size(found) == 1) common = common//ending
+    if (len(common) > typed) then
+      if (el_winsertstr(editor, to_wide(common(typed + 1:))) == 0) answer = cc_refresh
     else if (size(found) > 1) then
       write (error_unit, '(a)', advance='no') new_line('a')//in_columns(found, 79)
       flush (error_unit)

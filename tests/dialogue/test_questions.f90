@@ -211,7 +211,7 @@ contains
       call tester%is_true(find_question(interview%questions, label_of(question)) == i, &
                           label_of(question)//': the label belongs to one question')
       if (any(question%kind == [check_structure, check_start, check_all])) cycle
-      call words_for(question, interview%outline, words)
+      call words_for(question, interview%draft, interview%outline, words)
       call tester%is_true(size(words) >= 4, label_of(question)//': there are words to complete an answer')
       if (question%kind == ask_seldom .and. group_table(question%group_row)%name == 'output') &
         call tester%is_true(index(help_of(question, interview%draft, interview%outline), 'view: axes of both pictures') > 0, &

@@ -1,7 +1,7 @@
 !> Tests of completion: words that fit, what they have in common, the list of them.
 module test_completion
   use mech9_text, only: string_type
-  use mech9_completion, only: beginning_of_word, completions, common_beginning, in_columns
+  use mech9_completion, only: find_completions, beginning_of_word, completions, common_beginning, in_columns
   use mech9_testing, only: tester_type
   implicit none
   private
@@ -15,6 +15,7 @@ contains
 
     if (tester%runs('test_beginning')) call test_beginning(tester)
     if (tester%runs('test_completions')) call test_completions(tester)
+    if (tester%runs('test_formulas')) call test_formulas(tester)
     if (tester%runs('test_columns')) call test_columns(tester)
   end subroutine run
 
@@ -50,6 +51,37 @@ contains
     call completions(words, '', found)
     call tester%is_true(size(found) == 4 .and. len(common_beginning(found)) == 0, 'all words begin with nothing')
   end subroutine test_completions
+
+  !> Names in formulas, in numbers that a parameter sets, and within quotes.
+  subroutine test_formulas(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    type(string_type) :: words(3)
+
+    words(1)%text = 'diagonal'
+    words(2)%text = 'pair(B).point(1)'
+    words(3)%text = 'pair(B).axis(1)'
+    call expect('sqrt(2*di', 1, 2, ' ')
+    call expect('2^', 3, 0, ' ')
+    call expect('pair(B).p', 1, 9, ' ')
+    call expect('a=pair(', 2, 5, ' ')
+    call expect('links = 1, ''di', 1, 2, '''')
+    call expect('links = "di', 1, 2, '"')
+    call expect('sqrt(x', 0, 1, ' ')
+  contains
+    !> Expect words that fit a text.
+    subroutine expect(text, count, letters, end)
+      character(len=*), intent(in) :: text   !< before the cursor
+      integer, intent(in) :: count           !< how many words fit
+      integer, intent(in) :: letters         !< of a word that are typed
+      character, intent(in) :: end           !< behind a whole word
+      type(string_type), allocatable :: found(:)
+      character :: ending
+      integer :: typed
+
+      call find_completions(text, words, found, typed, ending)
+      call tester%is_true(size(found) == count .and. typed == letters .and. ending == end, 'names that fit '//text)
+    end subroutine expect
+  end subroutine test_formulas
 
   subroutine test_columns(tester)
     type(tester_type), intent(inout) :: tester   !< counts the checks

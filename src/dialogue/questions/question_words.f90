@@ -8,6 +8,7 @@ module mech9_question_words
   use mech9_answer_units, only: part_length
   use mech9_draft, only: draft_type, unquoted
   use mech9_draft_names, only: names_in_draft, shown_text
+  use mech9_known_names, only: add_names_for
   use mech9_topics, only: groups_of_topic, can_be_left_out
   use mech9_compound_joint, only: compound_kinds
   use mech9_draft_joints, only: kind_in, number_in, coordinates_of_pair, kind_of_coordinate
@@ -437,9 +438,10 @@ contains
     end do
   end function seldom_names
 
-  !> List the words that can be completed at a question: those that it takes, and the commands.
-  pure subroutine words_for(question, outline, words)
+  !> List the words that can be completed at a question: those that it takes, names of the draft, and the commands.
+  pure subroutine words_for(question, draft, outline, words)
     type(question_type), intent(in) :: question              !< the question
+    type(draft_type), intent(in) :: draft                    !< groups and names with their values as text
     type(outline_type), intent(in) :: outline                !< facts known beside the draft
     type(string_type), allocatable, intent(out) :: words(:)  !< words that can be completed
     character(len=:), allocatable :: list
@@ -476,5 +478,6 @@ contains
         words(i)%text = trim(all_words(i))
       end do
     end associate
+    if (question%kind == ask_item) call add_names_for(item_table(question%row), draft, words)
   end subroutine words_for
 end module mech9_question_words
