@@ -43,7 +43,7 @@ module mech9_failure
     !> (coordinate, of `others`) whether the coordinate could be chosen in place of that one.
     logical, allocatable :: replaces(:, :)
     real(wp), allocatable :: values(:, :)       !< positions or rates, in the units of the data file
-    character(len=:), allocatable :: name       !< as the user wrote it
+    character(len=:), allocatable :: name       !< as the user wrote it; else the unit in which lengths are told, or units of values
     integer :: link = 0                         !< on which a chain closes
     integer :: growing = 0                      !< coordinate that grows without bound, or number of frictions that slip
     integer :: number = 0                       !< of things, or the place of one in its row

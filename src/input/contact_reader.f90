@@ -61,7 +61,7 @@ contains
           call diagnostics%add(group%span, 'contacts and frictions of pairs are not available together; leave out the groups '// &
                                '&contact or the groups &friction')
         if (contact%surface == profile_surface) then
-          call append_sides(group, mechanism%units%length, contact, mechanism%contacts, diagnostics)
+          call append_sides(group, mechanism%units, contact, mechanism%contacts, diagnostics)
         else
           mechanism%contacts = [mechanism%contacts, contact]
         end if
@@ -167,9 +167,9 @@ contains
 
   !> Append the contacts of a ball with the sides of a path: one for each part between corners that stand in, where a ball touches both
   !> sides at once.
-  subroutine append_sides(group, unit, contact, contacts, diagnostics)
+  subroutine append_sides(group, units, contact, contacts, diagnostics)
     type(group_type), intent(in) :: group                         !< the group of the data file
-    real(wp), intent(in) :: unit                                  !< unit of lengths in the files [m]
+    type(units_type), intent(in) :: units                         !< units of the file
     type(contact_type), intent(in) :: contact                     !< the contact without its profile
     type(contact_type), allocatable, intent(inout) :: contacts(:) !< gets the contacts
     type(diagnostics_type), intent(inout) :: diagnostics          !< gets the errors
@@ -187,7 +187,7 @@ contains
       return
     end if
     call make_frame(group, '', contact%origin, axis, real_or(group, 'zero', default_zero(axis)), frame, diagnostics)
-    call read_profile(group, unit, contact%radius, whole, diagnostics)
+    call read_profile(group, units, contact%radius, whole, diagnostics)
     if (diagnostics%count > found) return
     call part_at_corners(whole, sides)
     call whole%prepare()
@@ -202,9 +202,9 @@ contains
   end subroutine append_sides
 
   !> Read the curve of a path as smooth pieces.
-  subroutine read_profile(group, unit, radius, profile, diagnostics)
+  subroutine read_profile(group, units, radius, profile, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
-    real(wp), intent(in) :: unit                          !< unit of lengths in the files [m]
+    type(units_type), intent(in) :: units                 !< units of the file
     real(wp), intent(in) :: radius                        !< of the ball [m]
     type(profile_type), intent(out) :: profile            !< the whole curve
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
@@ -219,9 +219,9 @@ contains
     call read_curve_file(beside(diagnostics%sources(1)%name, get_text(group, 'file')), span_of(group, 'file', 1), &
                          get_integers(group, 'columns'), 2, points, spans, corners, ok, diagnostics)
     if (.not. ok) return
-    points = unit*get_real(group, 'scale')*points
+    points = units%length*get_real(group, 'scale')*points
     n = size(spans)
-    call check_points(group, points, spans, profile%closed, ok, diagnostics)
+    call check_points(group, units, points, spans, profile%closed, ok, diagnostics)
     if (ok) call find_side(group, points, profile, ok, diagnostics)
     if (.not. ok) return
     if (profile%closed) points(:, n) = points(:, 1)
@@ -266,8 +266,9 @@ contains
   end function points_of_piece
 
   !> Report points that repeat their neighbour, lie beside the plane, or do not meet though they should.
-  subroutine check_points(group, points, spans, closed, ok, diagnostics)
+  subroutine check_points(group, units, points, spans, closed, ok, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
+    type(units_type), intent(in) :: units                 !< units of the file
     real(wp), intent(in) :: points(:, :)                  !< (3,n) the points [m]
     type(span_type), intent(in) :: spans(:)               !< (n) their places in the file
     logical, intent(out) :: closed                        !< the curve has no ends
@@ -292,8 +293,9 @@ contains
     closed = n > 2 .and. distance <= ends_meet*extent
     if (has_name(group, 'closed')) then
       if (get_logical(group, 'closed') .and. .not. closed) &
-        call diagnostics%add(span_of(group, 'closed', 1), 'the ends of the curve are '//to_text(distance, 4)// &
-                             ' m apart; repeat the first point at the end of its file, or leave ''closed'' out')
+        call diagnostics%add(span_of(group, 'closed', 1), 'the ends of the curve are '//to_text(distance/units%length, 4)//' '// &
+                             trim(units%length_name)//' apart; repeat the first point at the end of its file, or leave '// &
+                             '''closed'' out')
       closed = get_logical(group, 'closed')
     end if
     ok = diagnostics%count == found

@@ -117,7 +117,7 @@ contains
       end if
       allocate (slot%pair, source=procedure_pair)
     else if (kind == 'path') then
-      call read_path(data_file, group, mechanism%units%length, path, diagnostics)
+      call read_path(data_file, group, mechanism%units, path, diagnostics)
       if (diagnostics%count > found) return
       allocate (slot%pair, source=path)
     else
@@ -193,10 +193,10 @@ contains
   end subroutine read_frames
 
   !> A pair along the curve through the points of a file.
-  subroutine read_path(data_file, group, unit, pair, diagnostics)
+  subroutine read_path(data_file, group, units, pair, diagnostics)
     character(len=*), intent(in) :: data_file             !< path of the data file
     type(group_type), intent(in) :: group                 !< the group of the data file
-    real(wp), intent(in) :: unit                          !< unit of lengths in the files [m]
+    type(units_type), intent(in) :: units                 !< units of the file
     type(path_pair_type), intent(out) :: pair             !< the pair along a curve
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
     type(space_curve_type) :: curve
@@ -217,17 +217,18 @@ contains
     call make_frame(group, 'moving_', real_or(group, 'moving_point', [0.0_wp, 0.0_wp, 0.0_wp]), axis, zero, moving, diagnostics)
     call read_curve_file(beside(data_file, get_text(group, 'file')), span_of(group, 'file', 1), get_integers(group, 'columns'), &
                          fewest_points, points, spans, corners, ok, diagnostics)
-    scale = unit*get_real(group, 'scale')
+    scale = units%length*get_real(group, 'scale')
     if (ok) then
       points = scale*points
-      call read_curve(group, points, spans, curve, diagnostics)
+      call read_curve(group, units, points, spans, curve, diagnostics)
     end if
     if (diagnostics%count == found) pair = path_pair(curve, scale, get_text(group, 'orientation') == 'tangent', reference, moving)
   end subroutine read_path
 
   !> The curve through points. Points that repeat their neighbour, and ends that do not meet though they should, are reported.
-  subroutine read_curve(group, points, spans, curve, diagnostics)
+  subroutine read_curve(group, units, points, spans, curve, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
+    type(units_type), intent(in) :: units                 !< units of the file
     real(wp), intent(inout) :: points(:, :)               !< (3,n) the points, at least four; ends that meet are made equal [m]
     type(span_type), intent(in) :: spans(:)               !< (n) their places in the file
     type(space_curve_type), intent(out) :: curve          !< the curve
@@ -249,12 +250,14 @@ contains
     closed = distance <= ends_meet*size_of_curve
     if (has_name(group, 'closed')) then
       if (get_logical(group, 'closed') .and. .not. closed) &
-        call diagnostics%add(span_of(group, 'closed', 1), 'the ends of the curve are '//to_text(distance, 4)// &
-                             ' m apart; repeat the first point at the end of its file, or leave ''closed'' out')
+        call diagnostics%add(span_of(group, 'closed', 1), 'the ends of the curve are '//to_text(distance/units%length, 4)//' '// &
+                             trim(units%length_name)//' apart; repeat the first point at the end of its file, or leave '// &
+                             '''closed'' out')
       closed = get_logical(group, 'closed')
     else if (.not. closed .and. distance <= ends_nearly_meet*length_of(points)/(n - 1)) then
-      call diagnostics%add(spans(n), 'the last point misses the first one by '//to_text(distance, 4)//' m; for a closed curve '// &
-                           'repeat the first point with all its digits, or give closed=.false. in the data file')
+      call diagnostics%add(spans(n), 'the last point misses the first one by '//to_text(distance/units%length, 4)//' '// &
+                           trim(units%length_name)//'; for a closed curve repeat the first point with all its digits, '// &
+                           'or give closed=.false. in the data file')
     end if
     if (closed .and. n - 1 < fewest_points) &
       call diagnostics%add(spans(n), 'a smooth curve needs at least '//to_text(fewest_points)//' different points, and this '// &

@@ -1,6 +1,7 @@
 !> The section of a run: the points of the motion at which a coordinate or a column of the results has a value, or at the ends of periods.
 !> A motion goes on by strides; a stride that passes the value is searched for the times of passing, and a row is filled at each.
 module mech9_section_record
+  use mech9_failure_units, only: tell_in_units
   use mech9_kinds, only: wp, long
   use mech9_error, only: error_type
   use mech9_long_term, only: section_type
@@ -257,6 +258,7 @@ contains
 
     to = self%last%t
     call simulation%stride(t, from, to, at_joint, err)
+    call tell_in_units(err, simulation%model%mechanism)
     if (allocated(err)) return
     self%first = self%last
     self%last%t = to

@@ -5,6 +5,7 @@ module mech9_simulation
   use mech9_error, only: error_type, raise, add_place, exit_usage, exit_data, exit_integrator, exit_interrupted
   use mech9_simulation_failures, only: failure_not_started, failure_backwards, failure_interrupted, failure_accuracy, &
     failure_friction_sensitivity, failure_contact_sensitivity
+  use mech9_failure_units, only: tell_in_units
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -201,6 +202,7 @@ contains
     if (.not. allocated(err)) call self%begin((self%t), err)
     if (.not. allocated(err)) call arrive(self, (self%t), err)
     if (.not. allocated(err)) self%started = .true.
+    call tell_in_units(err, self%model%mechanism)
   end subroutine start
 
   !> Go on to time t. Fails with exit_singular where the motion cannot go on or its chains come open, with exit_integrator where
@@ -221,6 +223,7 @@ contains
     end if
     if (.not. allocated(err)) call self%go_to(t, err)
     if (.not. allocated(err)) call arrive(self, t, err)
+    call tell_in_units(err, self%model%mechanism)
   end subroutine advance
 
   !> Go on to a time between two of the results. The position is neither counted nor judged, but for its closure. Fails as
@@ -234,11 +237,13 @@ contains
 
     call self%stop_if_interrupted(t, err)
     if (.not. allocated(err)) call self%go_to(t, err)
-    if (allocated(err)) return
-    self%t = t
-    self%closure = self%present_closure()
-    call self%present(plan, state)
-    call check_closure(plan, t, self%closure, err)
+    if (.not. allocated(err)) then
+      self%t = t
+      self%closure = self%present_closure()
+      call self%present(plan, state)
+      call check_closure(plan, t, self%closure, err)
+    end if
+    call tell_in_units(err, self%model%mechanism)
     if (allocated(err)) return
     if (self%with_conditioning) call self%watch_conditioning(.true.)
     if (self%with_energies) call self%energies(self%kinetic_energy, self%potential_energy)

@@ -1,5 +1,6 @@
 !> Sentences about contacts of links that a motion cannot have.
 module mech9_contact_words
+  use mech9_length_words, only: length_in_words
   use mech9_text, only: to_text
   use mech9_failure, only: failure_type
   use mech9_integration_failures, only: failure_contact_paradox
@@ -19,20 +20,21 @@ contains
 
     select case (failure%kind)
     case (failure_contact_start)
-      text = 'the links of contact '//to_text(failure%number)//' are '//to_text(-failure%values(1, 1), 4)// &
-             ' m within each other at the start. Start elsewhere, or move the surface'
+      text = 'the links of contact '//to_text(failure%number)//' are '// &
+             trim(length_in_words(failure, -failure%values(1, 1), 4))//' within each other at the start. '// &
+             'Start elsewhere, or move the surface'
     case (failure_contact_violated)
       text = 'the drives press the links of contact '//to_text(failure%number)//' into each other from t = '// &
-             to_text(failure%t, 10)//' s on; the gap has the rate '//to_text(failure%values(1, 1), 6)// &
-             ' m/s. Change the drives, or make the contact compliant by stiffness='
+             to_text(failure%t, 10)//' s on; the gap has the rate '//trim(length_in_words(failure, failure%values(1, 1), 6))// &
+             '/s. Change the drives, or make the contact compliant by stiffness='
     case (failure_undecided_contact)
       text = 'the motion ends at t = '//to_text(failure%t, 10)//' s: the forces of rigid contacts with friction have '// &
              trim(merge('no solution      ', 'several solutions', failure%limit == 1))//' there, among them contact '// &
              to_text(failure%number)//' (the paradox of Painleve). Lower friction=, or make the contact compliant by stiffness='
     case (failure_contact_behind)
       text = 'the ball of contact '//to_text(failure%number)//' comes behind its path at t = '//to_text(failure%t, 10)// &
-             ' s, round one of its ends: it is '//to_text(-failure%values(1, 1), 4)//' m within the surface. Make the path '// &
-             'longer, or close it'
+             ' s, round one of its ends: it is '//trim(length_in_words(failure, -failure%values(1, 1), 4))// &
+             ' within the surface. Make the path longer, or close it'
     case (failure_contact_paradox)
       text = 'the friction of contact '//to_text(failure%number)//' has no solution from t = '//to_text(failure%t, 10)// &
              ' s on (the paradox of Painleve): its coefficient is '//to_text(failure%values(1, 1), 8)//', and from '// &
@@ -40,8 +42,8 @@ contains
              'Lower friction=, or end the motion before'
     case (failure_contact_passed)
       text = 'the links of contact '//to_text(failure%number)//' move into each other at t = '//to_text(failure%t, 10)// &
-             ' s: at t = '//to_text(failure%t_stop, 10)//' s they would be '//to_text(-failure%values(1, 1), 4)// &
-             ' m within each other. Change the drives, or move the surface'
+             ' s: at t = '//to_text(failure%t_stop, 10)//' s they would be '// &
+             trim(length_in_words(failure, -failure%values(1, 1), 4))//' within each other. Change the drives, or move the surface'
     case (failure_contact_sensitivity)
       text = 'derivatives by the parameters are not computed with contacts of links, as contact '//to_text(failure%number)// &
              '. Leave out the contact, the parameters, or sensitivities and gradients'

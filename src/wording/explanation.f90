@@ -28,6 +28,7 @@ module mech9_explanation
     failure_singular_passing
   use mech9_reaction_failures, only: failure_unbalanced
   use mech9_equilibrium_failures, only: failure_no_equilibrium, failure_interrupted_starts, failure_moving_setpoint
+  use mech9_length_words, only: length_in_words
   use mech9_block_names, only: chain_names, words_of_block
   use mech9_coupling_words, only: explain_coupling
   use mech9_choice_words, only: explain_choice, longest_list
@@ -120,7 +121,7 @@ contains
 
     text = 'the mechanism cannot be assembled: '//chain_names(failure%chains)// &
            ' (it closes'//trim(on_link(failure%link))//' through coordinate '//to_text(failure%coordinates)// &
-           ') stays open by '//to_text(failure%gap, 3)//' m at best; '
+           ') stays open by '//trim(length_in_words(failure, failure%gap, 3))//' at best; '
     if (failure%kind == failure_nearly_closed_chain) then
       text = text//'so small a gap comes from directions or points given with too few digits, '// &
              'for a chain that moves only when its geometry is exact; give more digits, or allow for their error with '// &
@@ -138,7 +139,7 @@ contains
     text = chain_names(failure%chains)//' does not move: '//to_text(failure%number)// &
            ' of its equations follow'//trim(merge('s', ' ', failure%number == 1))//' from the others at the start only; '// &
            'after a displacement of '//to_text(failure%displacement, 2)//' (rad, or parts of the mechanism''s size) it '// &
-           'stays open by '//to_text(failure%gap, 3)//' m; '
+           'stays open by '//trim(length_in_words(failure, failure%gap, 3))//'; '
     if (failure%kind == failure_nearly_moving_chain) then
       text = text//'its dimensions are about '//to_text(failure%distance, 1)//' (rad, or parts of the size) from those of '// &
              'an overconstrained mechanism that moves: give points and directions with more digits, or allow for their '// &
@@ -326,15 +327,16 @@ contains
 
     select case (failure%kind)
     case (failure_open_position)
-      text = 'the closed chains are open by '//to_text(failure%gap, 3)//' m at t = '//to_text(failure%t, 7)// &
-             ' s, and '//to_text(failure%tolerance, 3)//' m is allowed ('//to_text(failure%tolerance/failure%size, 1)// &
-             ' of the mechanism''s size): its dimensions let it move near the start only; give points and directions with '// &
-             'more digits, or a larger &mechanism data_tolerance'
+      text = 'the closed chains are open by '//trim(length_in_words(failure, failure%gap, 3))//' at t = '// &
+             to_text(failure%t, 7)//' s, and '//trim(length_in_words(failure, failure%tolerance, 3))//' is allowed ('// &
+             to_text(failure%tolerance/failure%size, 1)//' of the mechanism''s size): its dimensions let it move near the '// &
+             'start only; give points and directions with more digits, or a larger &mechanism data_tolerance'
     case (failure_lost_link)
-      text = 'the closed chains are open by '//to_text(failure%gap, 3)//' m at t = '//to_text(failure%t, 7)// &
-             ' s, by the round-off of lengths of '//to_text(failure%size, 3)//' m, and '//to_text(failure%tolerance, 3)// &
-             ' m is allowed beside link '//to_text(failure%link)//', whose pairs are '//to_text(failure%distance, 3)// &
-             ' m apart: its motion is lost in this round-off; give lengths that differ less'
+      text = 'the closed chains are open by '//trim(length_in_words(failure, failure%gap, 3))//' at t = '// &
+             to_text(failure%t, 7)//' s, by the round-off of lengths of '//trim(length_in_words(failure, failure%size, 3))// &
+             ', and '//trim(length_in_words(failure, failure%tolerance, 3))//' is allowed beside link '// &
+             to_text(failure%link)//', whose pairs are '//trim(length_in_words(failure, failure%distance, 3))//' apart: its '// &
+             'motion is lost in this round-off; give lengths that differ less'
     case (failure_no_initial_position)
       text = 'the independent coordinate '//to_text(failure%coordinates)//' of this pair has no initial position; '// &
              'give &initial coordinate='//to_text(failure%coordinates)//', position=..., velocity=... /'
@@ -347,9 +349,9 @@ contains
       text = 'interrupted before t = '//to_text(failure%t, 10)//' s'
     case (failure_off_curve)
       text = 'coordinate '//to_text(failure%coordinates)//' comes to an end of its curve at t = '//to_text(failure%t, 10)// &
-             ' s: it would go on to '//to_text(failure%values(1, 1), 10)//' m, and the curve leads from 0 to '// &
-             to_text(failure%values(2, 1), 10)//' m. Start elsewhere on the curve, end the motion earlier, or give points of a '// &
-             'longer curve'
+             ' s: it would go on to '//trim(length_in_words(failure, failure%values(1, 1), 10))//', and the curve leads '// &
+             'from 0 to '//trim(length_in_words(failure, failure%values(2, 1), 10))//'. Start elsewhere on the '// &
+             'curve, end the motion earlier, or give points of a longer curve'
     case (failure_accuracy)
       call explain_accuracy(failure, text)
     end select
@@ -400,8 +402,8 @@ contains
                ' at '//to_text(failure%values(i, 2), 6)
     end do
     text = 'no position of equilibrium was found from the initial position; where the search ended, the loads still push '// &
-           'with (N m, N): '//forces//'. Give another initial position, or --starts N for many, or look whether the loads '// &
-           'can be balanced at all'
+           'with ('//failure%name//'): '//forces//'. Give another initial position, or --starts N for '// &
+           'many, or look whether the loads can be balanced at all'
   end subroutine explain_equilibrium
 
   !> Points through which no spline can be laid.

@@ -1,5 +1,7 @@
 !> The oddities of the geometry of chains that cannot close or move, in words.
 module mech9_geometry_words
+  use mech9_failure_units, only: tell_in_units
+  use mech9_result_units, only: length_text
   use mech9_kinds, only: wp, radians_per_degree
   use mech9_error, only: error_type, add_place, exit_structure, exit_assembly
   use mech9_text, only: to_text
@@ -26,6 +28,7 @@ contains
     type(oddity_type) :: oddity
     character(len=:), allocatable :: words
 
+    call tell_in_units(err, mechanism)
     if (.not. allocated(err)) return
     if (err%code /= exit_structure .and. err%code /= exit_assembly) return
     if (allocated(err%failure)) then
@@ -35,14 +38,14 @@ contains
     call find_oddity(mechanism, oddity)
     if (oddity%kind == none_found) return
     call explain(err)
-    call describe(mechanism%structure, oddity, words)
+    call describe(mechanism, oddity, words)
     err%message = words//'; '//err%message
     if (size(oddity%odd) > 0) call add_place(err, place=mechanism%pairs(oddity%odd(1))%pair%place)
   end subroutine explain_geometry
 
   !> A sentence about an oddity.
-  pure subroutine describe(structure, oddity, words)
-    type(structure_type), intent(in) :: structure            !< links and joints
+  pure subroutine describe(mechanism, oddity, words)
+    type(mechanism_type), intent(in) :: mechanism            !< the mechanism
     type(oddity_type), intent(in) :: oddity                  !< the oddity, with pairs, link, angle or distance by its kind
     character(len=:), allocatable, intent(out) :: words  !< the sentence; empty for an unknown kind
     character(len=:), allocatable :: chain, pairs
@@ -58,17 +61,18 @@ contains
               '), which could move in a plane'
     case (not_concurrent)
       words = 'the axis of '//pairs//' misses the point in which the other axes'//chain//' meet by '// &
-              to_text(oddity%distance, 3)//' m'
+              trim(length_text(mechanism, oddity%distance, 3))
     case (other_height)
       words = 'the points of its pairs leave the closed chain of pairs '//to_text(oddity%pairs)//' open by '// &
-              to_text(oddity%distance, 3)//' m along its parallel axes, wherever it moves'
+              trim(length_text(mechanism, oddity%distance, 3))//' along its parallel axes, wherever it moves'
       if (size(oddity%odd) > 0) words = words//': see point and moving_point of '//pairs
     case (too_long)
-      words = trim(link_name(structure, oddity%link))//' is '//to_text(oddity%distance, digits)//' m long from pair '// &
-              to_text(oddity%odd(1))//' to pair '//to_text(oddity%odd(2))//', and the other links'//chain//' are '// &
-              to_text(oddity%others, digits)//' m long together'
+      words = trim(link_name(mechanism%structure, oddity%link))//' is '// &
+              trim(length_text(mechanism, oddity%distance, digits))//' long from pair '//to_text(oddity%odd(1))// &
+              ' to pair '//to_text(oddity%odd(2))//', and the other links'//chain//' are '// &
+              trim(length_text(mechanism, oddity%others, digits))//' long together'
     case (bent_link)
-      words = 'the axes of '//pairs//' are not parallel on '//trim(link_name(structure, oddity%link))//' (by '// &
+      words = 'the axes of '//pairs//' are not parallel on '//trim(link_name(mechanism%structure, oddity%link))//' (by '// &
               trim(degrees(oddity%angle))// &
               '), as they are on all other links'//chain//': see axis and moving_axis of these pairs'
     case default

@@ -10,12 +10,13 @@ module mech9_equilibrium_search
   use mech9_equilibrium_failures, only: failure_no_equilibrium
   use mech9_lapack, only: dsyev
   use mech9_singular_values, only: decompose
+  use mech9_result_units, only: unit_of, si_force
   use mech9_mechanism, only: mechanism_type
   use mech9_resting_mechanism, only: resting_type, find_stiffness, try_step, choose_coordinates, is_balanced, &
     is_zero_force, copy_resting
   implicit none
   private
-  public :: find_from_start, find_any, raise_no_equilibrium
+  public :: find_from_start, find_any, raise_no_equilibrium, tell_forces
 
   !> Steps of Newton's method up to this lead to an equilibrium near by [rad, lengths of the mechanism].
   real(wp), parameter :: near_by = 0.3_wp
@@ -51,19 +52,39 @@ contains
     ! unstable equilibria, and those of forces that are not conservative
     call copy_resting(start, resting)
     call find_any(mechanism, resting, found, err)
-    if (.not. allocated(err) .and. .not. found) call raise_no_equilibrium(resting, err)
+    if (.not. allocated(err) .and. .not. found) call raise_no_equilibrium(mechanism, resting, err)
   end subroutine find_from_start
 
   !> Fail because no equilibrium was found, with the forces in the last position.
-  subroutine raise_no_equilibrium(resting, err)
+  subroutine raise_no_equilibrium(mechanism, resting, err)
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
     type(resting_type), intent(in) :: resting           !< the mechanism at the end of the search
     type(error_type), allocatable, intent(out) :: err   !< the failure
 
     call raise(err, exit_assembly, failure_no_equilibrium)
-    err%failure%coordinates = resting%free
-    err%failure%values = reshape([resting%forces/resting%plan%unit_of(resting%free), &
-                                  resting%state%q(resting%free)/resting%plan%result_unit(resting%free)], [size(resting%free), 2])
+    call tell_forces(mechanism, resting%free, resting%forces/resting%plan%unit_of(resting%free), resting%state%q(resting%free), &
+                     err)
   end subroutine raise_no_equilibrium
+
+  !> Add forces on coordinates and the positions of these to a failure, in units of the data file.
+  pure subroutine tell_forces(mechanism, coordinates, forces, positions, err)
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    integer, intent(in) :: coordinates(:)               !< their numbers
+    real(wp), intent(in) :: forces(:)                   !< on each of them [N m, N]
+    real(wp), intent(in) :: positions(:)                !< of each of them [rad, m]
+    type(error_type), intent(inout) :: err              !< gets them, with the names of the units of forces
+    integer :: i
+
+    err%failure%coordinates = coordinates
+    allocate (err%failure%values(size(coordinates), 2))
+    do i = 1, size(coordinates)
+      associate (k => coordinates(i))
+        err%failure%values(i, 1) = forces(i)/mechanism%units%size_of(trim(si_force(mechanism%pairs(k)%pair)))
+        err%failure%values(i, 2) = positions(i)/unit_of(mechanism, k)
+      end associate
+    end do
+    err%failure%name = trim(mechanism%units%name_of('N m'))//', '//trim(mechanism%units%name_of('N'))
+  end subroutine tell_forces
 
   !> Descend from the position to a stable equilibrium. An equilibrium near by is taken as it is.
   subroutine descend(mechanism, resting, found, err)

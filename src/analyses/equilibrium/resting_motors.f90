@@ -17,6 +17,7 @@ module mech9_resting_motors
   use mech9_planning, only: planning_settings_type, make_plan
   use mech9_resting_plan, only: plan_by_geometry
   use mech9_motion_variation, only: vary_motion
+  use mech9_equilibrium_search, only: tell_forces
   use mech9_resting_mechanism, only: resting_type, put_to_rest, stand_at, copy_resting
   implicit none
   private
@@ -153,8 +154,8 @@ contains
       associate (motor => mechanism%motors(i)%motor)
         if (.not. motor%holds_setpoint() .or. state%limited(i) == 0) cycle
         call raise(err, exit_assembly, failure_no_equilibrium)
-        err%failure%coordinates = [motor%coordinate]
-        err%failure%values = reshape([motor%excess_of(forces(motor%coordinate)), state%q(motor%coordinate)], [1, 2])
+        call tell_forces(mechanism, [motor%coordinate], [motor%excess_of(forces(motor%coordinate))], &
+                         [state%q(motor%coordinate)], err)
         return
       end associate
     end do

@@ -2,6 +2,7 @@
 !> profile does not enter. It shows the follower where the motion begins, and the places of extreme values. Parts that
 !> are undercut are red.
 module mech9_cam_picture
+  use mech9_units, only: units_type
   use mech9_result_units, only: length_text
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -67,7 +68,7 @@ contains
     if (turns) call put_axis(profile, centre, sheet, page)
     call put_extremes(model, profile, sheet, page)
     call put_title(model%mechanism%title, name, page)
-    call put_scale(sheet, page)
+    call put_scale(model%mechanism%units, sheet, page)
     call page%line('</svg>')
     call page%save(path, err)
   end subroutine save_cam_picture
@@ -266,12 +267,13 @@ contains
   end subroutine put_title
 
   !> Draw a bar of a round length.
-  subroutine put_scale(sheet, page)
+  subroutine put_scale(units, sheet, page)
+    type(units_type), intent(in) :: units    !< of the data file, in which the length is round
     type(sheet_type), intent(in) :: sheet    !< from the plane to the page
     type(page_type), intent(inout) :: page   !< gets the bar
     real(wp) :: length, wanted
 
-    wanted = 100.0_wp/sheet%scale
+    wanted = 100.0_wp/sheet%scale/units%length
     length = 10.0_wp**floor(log10(wanted))
     if (5.0_wp*length <= wanted) then
       length = 5.0_wp*length
@@ -279,7 +281,8 @@ contains
       length = 2.0_wp*length
     end if
     call page%line('<g id="scale"><path stroke="#222" stroke-width="1.5" d="M14 '//decimal(height - 22.0_wp)//'v5h'// &
-                   decimal(length*sheet%scale)//'v-5"/><text class="small" x="'//decimal(22.0_wp + length*sheet%scale)// &
-                   '" y="'//decimal(height - 14.0_wp)//'">'//to_text(length)//' m</text></g>')
+                   decimal(length*units%length*sheet%scale)//'v-5"/><text class="small" x="'// &
+                   decimal(22.0_wp + length*units%length*sheet%scale)// &
+                   '" y="'//decimal(height - 14.0_wp)//'">'//to_text(length)//' '//trim(units%length_name)//'</text></g>')
   end subroutine put_scale
 end module mech9_cam_picture

@@ -8,6 +8,7 @@
 !> directions are lost for good, whose exponents are minus infinity.
 module mech9_exponents
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_negative_inf, ieee_quiet_nan
+  use mech9_failure_units, only: tell_in_units
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_usage, exit_data, exit_singular
   use mech9_text, only: to_text
@@ -248,6 +249,7 @@ contains
     interval = 0.0_wp
     do while (abs(t - to) > 0.0_wp)
       call simulation%stride(t, from, to, at_joint, err)
+      call tell_in_units(err, simulation%model%mechanism)
       if (allocated(err)) return
       passed = passed .or. at_joint
       if (abs(t - to) > 0.0_wp .and. (at_joint .or. abs(to - since) < interval)) cycle

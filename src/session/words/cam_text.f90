@@ -51,8 +51,9 @@ contains
     if (profile%off_plane > 0) then
       associate (contact => profile%contacts(profile%off_plane))
         if (profile%deviation > 0.0_wp) then
-          call raise(err, exit_data, cam//' is not plane: its follower moves by '//to_text(profile%deviation, 3)// &
-                     ' m along the axis of the cam up to t = '//to_text(contact%t)//' s; check ''axis'' and ''point'' of the cam')
+          call raise(err, exit_data, cam//' is not plane: its follower moves by '// &
+                     trim(length_text(model%mechanism, profile%deviation, 3))// &
+                     ' along the axis of the cam up to t = '//to_text(contact%t)//' s; check ''axis'' and ''point'' of the cam')
         else
           call raise(err, exit_data, cam//' is not plane: the flat face of its follower is not parallel to the axis of the cam '// &
                      'at t = '//to_text(contact%t)//' s; check ''axis'' and ''face'' of the cam')
