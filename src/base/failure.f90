@@ -55,8 +55,8 @@ module mech9_failure
     real(wp) :: size = 1.0_wp                   !< length of the mechanism [m]
     real(wp) :: displacement = 0.0_wp           !< at which a chain opens [rad, lengths of the mechanism]
     real(wp) :: distance = 0.0_wp               !< from dimensions that let a chain move [rad, lengths of the mechanism], or length of a link [m]
-    real(wp) :: deviation = 0.0_wp              !< estimated error of a position [rad, m]
-    real(wp) :: tolerance = 0.0_wp              !< as the user gave it, or an error that is allowed [m; of positions rad, m]
+    real(wp) :: deviation = 0.0_wp              !< estimated error of a position [unit of the file]
+    real(wp) :: tolerance = 0.0_wp              !< as the user gave it, or an error that is allowed [m; of positions unit of the file]
   end type failure_type
 
   !> The integration that a failure of its system ended.

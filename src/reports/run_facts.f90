@@ -84,6 +84,7 @@ contains
     type(facts_type), intent(inout) :: facts                  !< named numbers and texts about the run
     type(integration_statistics_type) :: counts
     type(work_count_type) :: work
+    character(len=:), allocatable :: unit
 
     counts = simulation%motion%statistics()
     call facts%add('outputs', outcome%rows, 'outputs computed')
@@ -91,8 +92,9 @@ contains
     call facts%add('relative_tolerance', model%request%solver%relative_tolerance, 'relative error allowed in a step', '1')
     call facts%add('absolute_tolerance', model%request%solver%absolute_tolerance, 'absolute error allowed in a step', '1')
     if (simulation%with_error) then
-      call facts%add('accuracy', simulation%errors%allowed, 'largest error that was allowed', 'rad,m')
-      call facts%add('error', simulation%largest_error, 'largest estimated error of the outputs', 'rad,m')
+      unit = model%mechanism%units%angle_name//','//trim(model%mechanism%units%length_name)
+      call facts%add('accuracy', simulation%errors%allowed, 'largest error that was allowed', unit)
+      call facts%add('error', simulation%largest_error, 'largest estimated error of the outputs', unit)
       call facts%add('other_runs', simulation%errors%runs, 'runs that tell the error and the tolerances')
       call facts%add('other_evaluations', simulation%errors%evaluations, 'evaluations of the accelerations in these runs')
     end if

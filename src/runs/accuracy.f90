@@ -60,7 +60,7 @@ module mech9_accuracy
     logical :: is_too_long = .false.               !< it ended since it took more steps than it may
     integer(long) :: steps = 0                     !< of the integrator
     real(wp) :: tolerance = 1.0_wp                 !< relative, and absolute [rad, m, per s]
-    real(wp), allocatable :: places(:, :)          !< (values, outputs) [rad, m]
+    real(wp), allocatable :: places(:, :)          !< (values, outputs) [unit of the file]
     type(error_type), allocatable :: failure       !< by which the run ended before the last output
   end type course_type
 
@@ -77,7 +77,7 @@ module mech9_accuracy
     type(course_type) :: with_least                          !< the run with the least tolerances, as soon as there is one
     type(course_type) :: reference                           !< the run with small tolerances
     logical :: is_too_stiff = .false.                        !< prince-dormand would take too many steps
-    real(wp), allocatable :: round_off(:)                    !< (outputs) error of the reference; 0: small beside others [rad, m]
+    real(wp), allocatable :: round_off(:)                    !< (outputs) error of the reference; 0: small beside others [unit of the file]
   end type search_type
 
   !> A run stops where the user wants it, or after a number of steps.
@@ -150,7 +150,9 @@ contains
     integer :: trial
 
     errors%method = trim(search%method%name)
-    tolerance = min(loosest, max(0.1_wp*errors%allowed, 10.0_wp*search%least))
+    associate (units => search%model%mechanism%units)
+      tolerance = min(loosest, max(0.1_wp*errors%allowed*min(units%length, units%angle), 10.0_wp*search%least))
+    end associate
     do trial = 1, most_trials
       if (trial == most_trials) tolerance = search%least
       if (search%reference%tolerance > max(largest_part*tolerance, search%least)) then
@@ -171,7 +173,7 @@ contains
   subroutine judge(search, judged, largest, errors)
     type(search_type), intent(inout) :: search             !< with the reference
     type(course_type), intent(in) :: judged                !< the run
-    real(wp), intent(in) :: largest                        !< error by which the accuracy is met [rad, m]
+    real(wp), intent(in) :: largest                        !< error by which the accuracy is met [unit of the file]
     type(estimated_errors_type), intent(inout) :: errors   !< get tolerance and errors
 
     call compare(search%reference, judged, errors)
@@ -234,8 +236,8 @@ contains
   !> A smaller tolerance, from the error of a run. One that is much too large says little about the next one.
   pure real(wp) function next_tolerance(tolerance, error, allowed)
     real(wp), intent(in) :: tolerance   !< of the run
-    real(wp), intent(in) :: error       !< largest one of the run [rad, m]
-    real(wp), intent(in) :: allowed     !< largest error that is allowed [rad, m]
+    real(wp), intent(in) :: error       !< largest one of the run [unit of the file]
+    real(wp), intent(in) :: allowed     !< largest error that is allowed [unit of the file]
 
     next_tolerance = tolerance*min(0.5_wp, max(1.0e-3_wp, aimed_part*allowed/error))
   end function next_tolerance
@@ -316,18 +318,25 @@ contains
   subroutine take_places(model, simulation, places)
     type(model_type), intent(in) :: model                            !< the model
     type(free_simulation_type), intent(in), target :: simulation     !< the motion
-    real(wp), intent(out) :: places(:)                               !< coordinates, and points in the axes of link 1 [rad, m]
+    real(wp), intent(out) :: places(:)                               !< coordinates, and points in the axes of link 1 [unit of the file]
     type(plan_type), pointer :: plan
     type(state_type), pointer :: state
-    integer :: i, n
+    logical :: recorded(size(model%mechanism%pairs))
+    integer :: i, k, n
 
     call simulation%present(plan, state)
     places = 0.0_wp
-    n = count(model%request%output%recorded(size(state%q)))
-    places(:n) = pack(state%q, model%request%output%recorded(size(state%q)))
+    recorded = model%request%output%recorded(size(recorded))
+    n = 0
+    do k = 1, size(recorded)
+      if (.not. recorded(k)) cycle
+      n = n + 1
+      places(n) = state%q(k)/plan%result_unit(k)
+    end do
     do i = 1, size(model%mechanism%points)
       associate (point => model%mechanism%points(i))
         call point_motion(plan, state, point%link, point%position, places(n + 1:n + 3))
+        places(n + 1:n + 3) = places(n + 1:n + 3)/model%mechanism%units%length
       end associate
       n = n + 3
     end do

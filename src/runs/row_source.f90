@@ -104,7 +104,8 @@ contains
     call append_contacts(columns, model%mechanism)
     call columns%append_in('closure', 'm', 'largest error of a closed chain')
     if (model%request%output%conditioning) call columns%append('conditioning', '1', 'least singular value of the worst chains')
-    if (with_error) call columns%append('error', 'rad,m', 'estimated error of the coordinates and points')
+    if (with_error) call columns%append('error', model%mechanism%units%angle_name//','//trim(model%mechanism%units%length_name), &
+                                        'estimated error of the coordinates and points')
   end subroutine find_columns
 
   !> Add the derivatives of the motion by the parameters of the model, after all other columns: those of the results, or, where the

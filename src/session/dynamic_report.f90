@@ -57,7 +57,9 @@ contains
       to_text(counts%error_test_failures + counts%convergence_failures + counts%refusals)//' made again, '// &
       counted(counts%rate_evaluations, 'evaluation')//each(outcome%seconds_solving, int(counts%rate_evaluations))
     if (simulation%with_error) write (unit, '(a)') &
-      'largest error '//to_text(simulation%largest_error, 2)//' (rad, m), estimated by '//to_text(simulation%errors%runs)// &
+      'largest error '//to_text(simulation%largest_error, 2)//' ('// &
+      simulation%model%mechanism%units%angle_name//', '//trim(simulation%model%mechanism%units%length_name)//'), estimated by '// &
+      to_text(simulation%errors%runs)// &
       ' other runs; tolerances '//to_text(simulation%model%request%solver%relative_tolerance, 2)
     write (unit, '(a)', advance='no') 'largest closure '//trim(length_text(simulation%model%mechanism, simulation%worst_closure, 3))
     if (simulation%motion%system%model%request%output%energies) &

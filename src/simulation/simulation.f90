@@ -59,12 +59,12 @@ module mech9_simulation
 
   !> Errors at the outputs of a motion, estimated from other runs of it (mech9_accuracy).
   type :: estimated_errors_type
-    real(wp) :: allowed = 0.0_wp              !< largest error that is allowed [rad, m]
+    real(wp) :: allowed = 0.0_wp              !< largest error that is allowed [unit of the file]
     real(wp) :: tolerance = 0.0_wp            !< of the motion, relative and absolute [rad, m, per s]
     character(len=:), allocatable :: method   !< of the motion
     !> Steps of bdf have these errors, and prince-dormand would take more than so many times their number; 0: it was not tried.
     integer :: limit_of_steps = 0
-    real(wp), allocatable :: at(:)            !< at the outputs, from the start on, as far as these runs led [rad, m]
+    real(wp), allocatable :: at(:)            !< at the outputs, from the start on, as far as these runs led [unit of the file]
     type(error_type), allocatable :: failure  !< of one of these runs, which ended before the last output
     integer :: runs = 0                       !< how many they were
     integer(long) :: evaluations = 0          !< of the accelerations in these runs
@@ -74,7 +74,7 @@ module mech9_simulation
   type :: position_counts_type
     integer(long) :: positions = 0                 !< positions that were worked out
     real(wp) :: worst_closure = 0.0_wp             !< largest closure error [m]
-    real(wp) :: largest_error = 0.0_wp             !< largest estimated error [rad, m]
+    real(wp) :: largest_error = 0.0_wp             !< largest estimated error [unit of the file]
     real(wp) :: largest_energy_change = 0.0_wp     !< of the sum of energies, against the start [J]
   end type position_counts_type
 
@@ -91,8 +91,8 @@ module mech9_simulation
     real(wp) :: worst_closure = 0.0_wp             !< largest closure error of all positions [m]
     real(wp) :: least_conditioning = 1.0_wp        !< least singular value of the present position, with_conditioning
     type(estimated_errors_type) :: errors          !< of the positions; times are then those of the outputs
-    real(wp) :: error = 0.0_wp                     !< estimated for the present position, with_error [rad, m]
-    real(wp) :: largest_error = 0.0_wp             !< estimated, of all positions, with_error [rad, m]
+    real(wp) :: error = 0.0_wp                     !< estimated for the present position, with_error [unit of the file]
+    real(wp) :: largest_error = 0.0_wp             !< estimated, of all positions, with_error [unit of the file]
     real(wp) :: kinetic_energy = 0.0_wp            !< of the present position, with_energies [J]
     real(wp) :: potential_energy = 0.0_wp          !< of gravity and springs, with_energies [J]
     real(wp) :: energy_at_start = 0.0_wp           !< sum of both energies, with_energies [J]
@@ -337,7 +337,7 @@ contains
   !> Fail where an error is larger than is allowed.
   pure subroutine judge_error(t, error, errors, err)
     real(wp), intent(in) :: t                             !< time of the position [s]
-    real(wp), intent(in) :: error                         !< its estimated error [rad, m]
+    real(wp), intent(in) :: error                         !< its estimated error [unit of the file]
     type(estimated_errors_type), intent(in) :: errors     !< of the motion, with the allowed one
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
 

@@ -367,8 +367,8 @@ contains
     if (failure%limit > 0) size = 'may be '
     text = 'the motion is not as accurate as was asked for at t = '//to_text(failure%t, 10)//' s: with the least tolerances '// &
            'of '//failure%name//', '//to_text(failure%values(1, 1), 2)//', its error '//size//to_text(failure%deviation, 2)// &
-           ', and '//to_text(failure%tolerance, 2)//' is allowed (rad, m). Round-off makes such an error in many steps, or '// &
-           'where the motion enlarges it: it may be chaotic. '
+           ', and '//to_text(failure%tolerance, 2)//' is allowed (in units of the file). Round-off makes such an error in '// &
+           'many steps, or where the motion enlarges it: it may be chaotic. '
     if (failure%limit > 0) text = text//'The motion is stiff: prince-dormand, which has less round-off than bdf, would take '// &
                                   'more than '//to_text(failure%limit)//' times as many steps. '
     if (failure%name == 'auto' .or. failure%name == 'prince-dormand') then

@@ -454,7 +454,7 @@ def free_cases():
           'method']),
         ('accuracy', swings, settings(accuracy='1e-17'), INTEGRATOR,
          ['the motion is not as accurate as was asked for at t = 0 s: with the least tolerances of auto, 1e-14, its error is about ',
-          ', and 1e-17 is allowed (rad, m). Round-off makes such an error in many steps, or where the motion enlarges it: it may be '
+          ', and 1e-17 is allowed (in units of the file). Round-off makes such an error in many steps, or where the motion enlarges it: it may be '
           'chaotic. End before this time, or ask for a larger accuracy']),
         ('stop_start', falling('low=1.25'), (), DATA,
          ['the motion starts beyond the end of stop 1: coordinate 1 is 1 m, 0.25 m beyond 1.25 m. Start elsewhere, or move the stop']),

@@ -406,7 +406,7 @@ module mech9_grammar
                   'auto prince-dormand dormand-prince verner fehlberg merson adams bdf', '', &
                   'the method of integration; auto: prince-dormand, and bdf while the motion is stiff', '''bdf'''), &
     item_row_type('solver', 'accuracy', 'real', 1, 1, '', optional, '0', '>=0', '', '', &
-                  'largest error of an output, in rad and m; other runs estimate it, and tolerances follow; 0: tolerances decide', &
+                  'largest error of an output, in units of this file; other runs tell it, tolerances follow; 0: not asked for', &
                   '1e-8', seldom=.true.), &
     item_row_type('solver', 'relative_tolerance', 'real', 1, 1, '', optional, '1e-8', '>0 and <1', '', '', &
                   'error allowed in each step, relative to coordinates and rates; errors add up, see '// &
