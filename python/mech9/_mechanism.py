@@ -444,7 +444,8 @@ class Mechanism:
             import xarray
         except ImportError:
             return runs
-        data = {names.get(name, name): ('run', runs[name].astype(int) if name == 'exit_code' else runs[name])
+        data = {names.get(name, name): ('run', runs[name].astype(int) if name == 'exit_code' else runs[name],
+                                        {'units': runs.units[name]} if runs.units[name] else {})
                 for name in runs.names if name != 'run'}
         if 'section' in runs.matrices:
             data |= {f'section.{name}': ('section_point', runs.section[name]) for name in runs.section.names}

@@ -392,7 +392,7 @@ contains
   type(c_ptr) function runs_of(study)
     type(study_type), intent(in) :: study   !< the study
     type(results_type), pointer :: found
-    type(c_text_type), allocatable :: parameters(:), quantities(:), ends(:)
+    type(c_text_type), allocatable :: parameters(:), quantities(:), ends(:), no_units(:), parameter_units(:), quantity_units(:)
     character(len=:), allocatable :: names(:), units(:)
     real(wp), allocatable :: points(:, :)
     integer :: i, n, m
@@ -404,7 +404,10 @@ contains
     call put_texts(study%quantity_names, quantities)
     call put_texts([character(len=9) :: 'run', 'exit_code'], ends)
     found%names = [ends(1), parameters, quantities, ends(2)]
-    call put_texts(spread(' ', 1, n + m + 2), found%units)
+    call put_texts([character(len=1) :: ' ', ' '], no_units)
+    call put_texts(study%parameter_units, parameter_units)
+    call put_texts(study%quantity_units, quantity_units)
+    found%units = [no_units(1), parameter_units, quantity_units, no_units(2)]
     found%count = size(study%exit_codes)
     allocate (found%rows(n + m + 2, found%count))
     do i = 1, found%count
@@ -458,7 +461,7 @@ contains
     character(len=*), intent(in) :: units(:)        !< (M) of the coordinates
     real(wp), intent(in) :: sizes(:)                !< (M) of these units [rad, m]
     type(results_type), pointer :: found
-    type(c_text_type), allocatable :: parameters(:), coordinates(:), others(:), coordinate_units(:), no_units(:)
+    type(c_text_type), allocatable :: parameters(:), coordinates(:), others(:), coordinate_units(:), no_units(:), parameter_units(:)
     integer :: i
 
     allocate (found)
@@ -466,9 +469,10 @@ contains
     call put_texts(names, coordinates)
     call put_texts(units, coordinate_units)
     call put_texts([character(len=6) :: 'value', 'starts'], others)
-    call put_texts(spread(' ', 1, size(parameters) + 2), no_units)
+    call put_texts([character(len=1) :: ' ', ' '], no_units)
+    call put_texts(optimum%parameter_units, parameter_units)
     found%names = [others(1), parameters, coordinates, others(2)]
-    found%units = [no_units(:size(parameters) + 1), coordinate_units, no_units(size(no_units))]
+    found%units = [no_units(1), parameter_units, coordinate_units, no_units(2)]
     found%count = size(optimum%values)
     allocate (found%rows(size(found%names), found%count))
     do i = 1, found%count

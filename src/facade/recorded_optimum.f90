@@ -3,6 +3,7 @@ module mech9_recorded_optimum
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_usage
   use mech9_text, only: string_type, texts_of_one_length
+  use mech9_result_units, only: unit_of_parameter
   use mech9_model, only: model_type
   use mech9_simulation, only: interruption_type
   use mech9_user_calls, only: calls_user_procedures
@@ -17,6 +18,7 @@ module mech9_recorded_optimum
   !> The distinct designs to which the starts led, best first.
   type :: recorded_optimum_type
     character(len=:), allocatable :: parameter_names(:)   !< (parameters) all of the data file
+    character(len=:), allocatable :: parameter_units(:)   !< (parameters) blank where none is known
     real(wp), allocatable :: values(:)                    !< (designs) of the objective: the less the better
     real(wp), allocatable :: parameters(:, :)             !< (parameters,designs) in the units of the data file
     real(wp), allocatable :: q(:, :)                      !< (M,designs) coordinates at the start [rad, m]
@@ -86,6 +88,7 @@ contains
     type(string_type) :: none(0)
 
     call texts_of_one_length(none, self%parameter_names)
+    call texts_of_one_length(none, self%parameter_units)
     self%values = [real(wp) ::]
     self%parameters = reshape([real(wp) ::], [0, 0])
     self%q = reshape([real(wp) ::], [0, 0])
@@ -98,13 +101,15 @@ contains
     type(recorded_optimum_type), intent(inout) :: self   !< gets them
     type(model_type), intent(in) :: model                !< the model
     type(optimum_search_type), intent(in) :: search      !< made
-    type(string_type) :: names(size(model%parameters))
+    type(string_type) :: names(size(model%parameters)), units(size(model%parameters))
     integer :: i
 
     do i = 1, size(names)
       names(i)%text = model%parameters(i)%name
+      units(i)%text = trim(unit_of_parameter(model%mechanism, model%parameters(i)))
     end do
     call texts_of_one_length(names, self%parameter_names)
+    call texts_of_one_length(units, self%parameter_units)
     associate (found => search%synthesis)
       self%made = found%done
       self%values = found%optima%value

@@ -5,6 +5,7 @@ module mech9_recorded_study
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: string_type, texts_of_one_length
+  use mech9_result_units, only: unit_of_parameter
   use mech9_model, only: model_type
   use mech9_simulation, only: interruption_type
   use mech9_quantity_record, only: quantity_record_type
@@ -30,6 +31,8 @@ module mech9_recorded_study
   type :: recorded_study_type
     character(len=:), allocatable :: parameter_names(:)   !< (parameters)
     character(len=:), allocatable :: quantity_names(:)    !< (quantities)
+    character(len=:), allocatable :: parameter_units(:)   !< (parameters) blank where none is known
+    character(len=:), allocatable :: quantity_units(:)    !< (quantities)
     real(wp), allocatable :: parameters(:, :)             !< (parameters,runs) in the units of the data file
     real(wp), allocatable :: quantities(:, :)             !< (quantities,runs) in their units; not numbers where the run failed
     integer, allocatable :: exit_codes(:)                 !< (runs) 0, or the code with which the run failed
@@ -107,6 +110,7 @@ contains
     if (.not. allocated(err)) then
       call mechanism%take_variable(program, variable)
       call allocate_arrays(self, model, model%request%study%runs)
+      call take_units(self, model, quantities)
       makers = max(1, min(threads, model%request%study%runs, most_threads))
       if (model%request%study%carries()) makers = 1
       call begin_section(model, self%points_of_runs, err)
@@ -161,12 +165,32 @@ contains
     end do
     call texts_of_one_length(parameters, self%parameter_names)
     call texts_of_one_length(quantities, self%quantity_names)
+    self%parameter_units = spread(' ', 1, n_parameters)
+    self%quantity_units = spread(' ', 1, n_quantities)
     if (allocated(self%parameters)) deallocate (self%parameters, self%quantities, self%exit_codes)
     allocate (self%parameters(n_parameters, runs), self%quantities(n_quantities, runs), self%exit_codes(runs))
     self%parameters = ieee_value(1.0_wp, ieee_quiet_nan)
     self%quantities = ieee_value(1.0_wp, ieee_quiet_nan)
     self%exit_codes = 0
   end subroutine allocate_arrays
+
+  !> Take the units of parameters and quantities.
+  subroutine take_units(self, model, quantities)
+    type(recorded_study_type), intent(inout) :: self         !< the study
+    type(model_type), intent(in) :: model                    !< with parameters
+    type(quantity_record_type), intent(in) :: quantities     !< knows the units of their columns
+    type(string_type) :: parameter_units(size(self%parameter_units)), quantity_units(size(self%quantity_units))
+    integer :: i
+
+    do i = 1, size(parameter_units)
+      parameter_units(i)%text = trim(unit_of_parameter(model%mechanism, model%parameters(i)))
+    end do
+    do i = 1, size(quantity_units)
+      quantity_units(i)%text = trim(quantities%unit_of(i))
+    end do
+    call texts_of_one_length(parameter_units, self%parameter_units)
+    call texts_of_one_length(quantity_units, self%quantity_units)
+  end subroutine take_units
 
   !> The points of the sections of all runs, where the mechanism has a group &section: columns run, those of the parameters, point, t and
   !> those of the runs. There are no columns without a section.

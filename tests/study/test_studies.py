@@ -277,7 +277,7 @@ def test_report(cases, mech9k):
             check.true(one['least'] == column.min() and one['greatest'] == column.max()
                        and np.isclose(one['mean'], column.mean(), rtol=1e-13, atol=1e-15), f"report: {one['name']}", one)
     units = re.search('# units: (.*)', text_of(os.path.join(cases.folder, 'study.dat'))).group(1)
-    check.true(re.fullmatch(r'\s*1\s+1\s+1\s+m\s+m\s+m_s\s+1\s*', units), 'units of the table', units)
+    check.true(re.fullmatch(r'\s*1\s+m\s+m\s+m\s+m\s+m_s\s+1\s*', units), 'units of the table', units)
     check.true(re.search(r'^stroke: \S+ to \S+ m$', printed, re.M) and re.search(r'^way: \S+ to \S+ m s$', printed, re.M), 'units of the summary', printed)
 
 

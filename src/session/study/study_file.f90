@@ -140,7 +140,7 @@ contains
       call self%outcomes%start_fixed(columns, columns, layout%runs_of_part(), only_read)
       do i = 1, n
         call self%outcomes%add(new_column_set('parameters/'//layout%parameters(i)%text, [i], [integer ::], &
-                                              'parameter '//layout%parameters(i)%text, '', ['/run']))
+                                              'parameter '//layout%parameters(i)%text, layout%parameter_units(i)%text, ['/run']))
       end do
       do i = 1, size(layout%quantities)
         call self%outcomes%add(new_column_set('quantities/'//layout%quantities(i)%text, [n + i], [integer ::], &

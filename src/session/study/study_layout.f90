@@ -1,6 +1,7 @@
 !> Names and units of what the file of a study holds, from its model or from a file.
 module mech9_study_layout
   use mech9_text, only: string_type
+  use mech9_result_units, only: unit_of_parameter
   use mech9_model, only: model_type
   use mech9_hdf5_file, only: hdf5_file_type
   use mech9_hdf5_reading, only: read_text, read_texts, read_integer, has_data_set
@@ -18,6 +19,7 @@ module mech9_study_layout
     type(string_type), allocatable :: parameters(:)      !< their names
     type(string_type), allocatable :: quantities(:)      !< their names
     type(string_type), allocatable :: units(:)           !< (quantities)
+    type(string_type), allocatable :: parameter_units(:) !< (parameters) empty where none is known
     type(string_type), allocatable :: meanings(:)        !< (quantities) a few words that describe each
     type(string_type), allocatable :: columns(:)         !< paths of the data sets over runs and time; none: the file has none
   contains
@@ -49,9 +51,10 @@ contains
     layout%runs = model%request%study%runs
     layout%part = part
     allocate (layout%columns(0))
-    allocate (layout%parameters(size(model%parameters)))
+    allocate (layout%parameters(size(model%parameters)), layout%parameter_units(size(model%parameters)))
     do i = 1, size(layout%parameters)
       layout%parameters(i)%text = model%parameters(i)%name
+      layout%parameter_units(i)%text = trim(unit_of_parameter(model%mechanism, model%parameters(i)))
     end do
     associate (requested => model%request%quantities)
       allocate (layout%quantities(size(requested)), layout%units(size(requested)), layout%meanings(size(requested)))
@@ -76,6 +79,7 @@ contains
     call file%put('study/part', layout%part(1), 'number of the part of the study that this file has')
     call file%put('study/parts', layout%part(2), 'how many parts there are')
     call file%put('study/parameters', layout%parameters, 'names of the parameters in their order')
+    call file%put('study/parameter_units', layout%parameter_units, 'unit of each parameter; empty where none is known')
     call file%put('study/quantities', layout%quantities, 'names of the quantities in their order')
     call file%put('study/units', layout%units, 'unit of each quantity')
     call file%put('study/meanings', layout%meanings, 'meaning of each quantity')
@@ -96,11 +100,18 @@ contains
     call read_texts(file, 'study/quantities', layout%quantities)
     call read_texts(file, 'study/units', layout%units)
     call read_texts(file, 'study/meanings', layout%meanings)
+    ! files of earlier versions have no such units
+    if (has_data_set(file, 'study/parameter_units')) then
+      call read_texts(file, 'study/parameter_units', layout%parameter_units)
+    else
+      allocate (layout%parameter_units(size(layout%parameters)), source=string_type(''))
+    end if
     allocate (layout%columns(0))
     if (has_data_set(file, 'study/columns')) call read_texts(file, 'study/columns', layout%columns)
     if (allocated(file%failure)) return
     if (layout%runs < 0 .or. any(layout%part < 1) .or. layout%part(1) > layout%part(2)) &
       call file%fail('the numbers of its runs and parts make no sense')
+    if (size(layout%parameter_units) /= size(layout%parameters)) call file%fail('the units of its parameters make no sense')
     if (size(layout%units) /= size(layout%quantities) .or. size(layout%meanings) /= size(layout%quantities)) &
       call file%fail('the units of its quantities make no sense')
   end subroutine read_layout

@@ -199,6 +199,7 @@ contains
     names(n + m + 2)%text = 'exit_code'
     do i = 1, n + m + 2
       units(i)%text = ''
+      if (i > 1 .and. i < n + 2) units(i)%text = layout%parameter_units(i - 1)%text
       if (i > n + 1 .and. i < n + m + 2) units(i)%text = layout%units(i - n - 1)%text
     end do
     call table%open(path, new_heading(layout%title, names, units), name_and_version(program), err)

@@ -7,6 +7,7 @@ module mech9_study_results
   use mech9_version, only: name_and_version
   use mech9_command_line, only: command_line_type
   use mech9_document, only: document_type
+  use mech9_result_units, only: unit_of_parameter
   use mech9_model, only: model_type
   use mech9_columns, only: columns_type
   use mech9_table, only: table_type
@@ -137,7 +138,7 @@ contains
     allocate (columns%names(0), columns%units(0), columns%long_names(0))
     call columns%append('run', '')
     do i = 1, size(model%parameters)
-      call columns%append(model%parameters(i)%name, '')
+      call columns%append(model%parameters(i)%name, trim(unit_of_parameter(model%mechanism, model%parameters(i))))
     end do
     do i = 1, size(model%request%quantities)
       call columns%append(model%request%quantities(i)%name, quantities%unit_of(i))

@@ -3,7 +3,8 @@ module mech9_optimum_group
   use mech9_kinds, only: wp
   use mech9_text, only: string_type
   use mech9_model, only: model_type
-  use mech9_result_units, only: unit_of
+  use mech9_objective, only: function_objective
+  use mech9_result_units, only: unit_of, unit_of_parameter
   use mech9_hdf5_file, only: hdf5_file_type
   use mech9_synthesis, only: synthesis_type
   implicit none
@@ -24,10 +25,10 @@ contains
     n = size(synthesis%optima)
     call file%put('optimum/made', synthesis%done, 'starts that were made')
     call file%put('optimum/reached', synthesis%reached, 'starts that led to a design')
-    call write_targets(file, synthesis)
+    call write_targets(file, model, synthesis)
     call file%put('design', [(i, i=1, n)], 'number of the distinct design, the best one first')
     call file%make_scale('design')
-    call put_over_designs('value', [(synthesis%optima(i)%value, i=1, n)], 'value of the objectives')
+    call put_over_designs('value', [(synthesis%optima(i)%value, i=1, n)], 'value of the objectives', '')
     call file%put('optimum/starts', [(synthesis%optima(i)%starts, i=1, n)], 'starts that led to the design')
     call file%attach_scales('optimum/starts', ['/design'])
     allocate (values(n, size(model%parameters)))
@@ -36,19 +37,21 @@ contains
     end do
     do i = 1, size(model%parameters)
       names(i)%text = model%parameters(i)%name
-      call put_over_designs('parameters/'//model%parameters(i)%name, values(:, i), 'parameter '//model%parameters(i)%name)
+      call put_over_designs('parameters/'//model%parameters(i)%name, values(:, i), 'parameter '//model%parameters(i)%name, &
+                            trim(unit_of_parameter(model%mechanism, model%parameters(i))))
     end do
     call file%put('parameter', names, 'names of the parameters in their order')
     call file%make_scale('parameter')
     call write_positions(file, model, synthesis)
   contains
     !> Write one number of each design.
-    subroutine put_over_designs(name, numbers, long_name)
+    subroutine put_over_designs(name, numbers, long_name, unit)
       character(len=*), intent(in) :: name         !< in the group
       real(wp), intent(in) :: numbers(:)           !< (designs)
       character(len=*), intent(in) :: long_name    !< a few words that describe it
+      character(len=*), intent(in) :: unit         !< its unit; empty: none is known
 
-      call file%put('optimum/'//name, numbers, long_name, '')
+      call file%put('optimum/'//name, numbers, long_name, unit)
       call file%attach_scales('optimum/'//name, ['/design'])
     end subroutine put_over_designs
   end subroutine write_optima
@@ -73,9 +76,10 @@ contains
     call file%attach_scales('optimum/times', ['/design', '/target'])
   end subroutine write_positions
 
-  !> Write the targets.
-  subroutine write_targets(file, synthesis)
+  !> Write the targets, in the units of the data file.
+  subroutine write_targets(file, model, synthesis)
     type(hdf5_file_type), intent(inout) :: file        !< the open file
+    type(model_type), intent(in) :: model              !< the model
     type(synthesis_type), intent(in) :: synthesis      !< with its targets
     character(len=*), parameter :: axis_names = 'xyz'
     type(string_type) :: axes(3)
@@ -89,12 +93,20 @@ contains
     call file%put('axis', axes, 'axis of the fixed frame')
     call file%make_scale('axis')
     do i = 1, size(synthesis%targets)
-      places(:, i) = synthesis%targets(i)%place
+      associate (objective => model%request%objectives(synthesis%targets(i)%objective))
+        places(:, i) = synthesis%targets(i)%place
+        if (objective%kind == function_objective) then
+          places(1, i) = places(1, i)/unit_of(model%mechanism, objective%coordinate)
+        else
+          places(:, i) = places(:, i)/model%mechanism%units%length
+        end if
+      end associate
     end do
     call file%put('targets/objective', [(synthesis%targets(i)%objective, i=1, size(synthesis%targets))], &
                   'number of the objective to which the target belongs')
     call file%attach_scales('targets/objective', ['/target'])
-    call file%put('targets/place', places, 'place of the target, or its value of a function in the first number', 'rad,m')
+    call file%put('targets/place', places, 'place of the target, or its value of a function in the first number', &
+                  model%mechanism%units%angle_name//','//trim(model%mechanism%units%length_name))
     call file%attach_scales('targets/place', ['/target', '/axis  '])
   end subroutine write_targets
 end module mech9_optimum_group

@@ -8,6 +8,7 @@ module mech9_optimum_results
   use mech9_command_line, only: command_line_type
   use mech9_document, only: document_type
   use mech9_diagnostics, only: diagnostics_type
+  use mech9_result_units, only: unit_of_parameter
   use mech9_model, only: model_type
   use mech9_columns, only: columns_type
   use mech9_table, only: table_type
@@ -175,7 +176,7 @@ contains
     allocate (columns%names(0), columns%units(0), columns%long_names(0))
     call columns%append('value', '')
     do i = 1, n
-      call columns%append(model%parameters(i)%name, '')
+      call columns%append(model%parameters(i)%name, trim(unit_of_parameter(model%mechanism, model%parameters(i))))
     end do
     call columns%append('starts', '')
     call table%open(path, heading_of(model%mechanism%title, columns), name_and_version(model%program), err)
