@@ -20,6 +20,7 @@ module mech9_api_simulation
     integer(c_int) :: mark = simulation_mark
     type(motion_type) :: motion
     real(wp), allocatable :: units(:)             !< (M) of the coordinates in the data file [rad, m]
+    real(wp), allocatable :: rate_units(:)        !< (M) of their rates [rad/s, m/s]
     logical :: is_busy = .false.                  !< a call changes it; a user procedure in it, or another thread, must not
   end type simulation_handle_type
 
@@ -54,6 +55,7 @@ contains
     end if
     if (.not. allocated(err)) then
       handle%units = [(handle%motion%unit(k), k=1, handle%motion%coordinates())]
+      handle%rate_units = [(handle%motion%rate_unit(k), k=1, handle%motion%coordinates())]
       simulation = c_loc(handle)
     end if
     code = end_analysis(error, err, moved, merge(kinematics, dynamics, with_forces == 0))
@@ -113,7 +115,7 @@ contains
   integer(c_int) function take(simulation, q, dq, ddq, error) bind(c, name='mech9_simulation_take') result(code)
     type(c_ptr), value, intent(in) :: simulation   !< the handle
     type(c_ptr), value, intent(in) :: q            !< (M) gets the coordinates [unit of the data file], or null
-    type(c_ptr), value, intent(in) :: dq           !< (M) gets their rates [unit/s], or null
+    type(c_ptr), value, intent(in) :: dq           !< (M) gets their rates [unit of the data file], or null
     type(c_ptr), value, intent(in) :: ddq          !< (M) gets their second derivatives [unit/s^2], or null
     type(c_ptr), value, intent(in) :: error        !< handle of errors, or null
     type(simulation_handle_type), pointer :: handle
@@ -126,7 +128,7 @@ contains
       allocate (found(size(handle%units), 3))
       call handle%motion%take_coordinates(found(:, 1), found(:, 2), found(:, 3))
       call put(found(:, 1)/handle%units, q)
-      call put(found(:, 2)/handle%units, dq)
+      call put(found(:, 2)/handle%rate_units, dq)
       call put(found(:, 3)/handle%units, ddq)
     end if
     code = end_call(error, err)

@@ -70,7 +70,7 @@ contains
     type(c_ptr), intent(in) :: simulations(n)         !< their handles
     integer(c_int), intent(in) :: codes(n)            !< exit code of each motion
     type(c_ptr), value, intent(in) :: q               !< (M,n) gets the coordinates [unit of the data file], or null
-    type(c_ptr), value, intent(in) :: dq              !< (M,n) gets their rates [unit/s], or null
+    type(c_ptr), value, intent(in) :: dq              !< (M,n) gets their rates [unit of the data file], or null
     type(c_ptr), value, intent(in) :: ddq             !< (M,n) gets their second derivatives [unit/s^2], or null
     type(c_ptr), value, intent(in) :: error           !< handle of errors, or null
     type(simulation_handle_type), pointer :: handle
@@ -88,7 +88,8 @@ contains
         exit
       end if
       call handle%motion%take_coordinates(found(:, 1), found(:, 2), found(:, 3))
-      found = found/spread(handle%units, 2, 3)
+      found(:, [1, 3]) = found(:, [1, 3])/spread(handle%units, 2, 2)
+      found(:, 2) = found(:, 2)/handle%rate_units
       if (codes(i) /= 0) found = ieee_value(1.0_wp, ieee_quiet_nan)
       call put_row(found(:, 1), i, q)
       call put_row(found(:, 2), i, dq)

@@ -113,8 +113,8 @@ contains
     integer, intent(out) :: codes(:)                                !< (n) 0, or the exit code of the failure
     type(error_type), allocatable, intent(out) :: err               !< allocated if it failed
     class(interruption_type), intent(in), optional :: interruption  !< is asked whether the search shall stop
-    real(wp), intent(in), optional :: rates(:, :)                   !< (I,n) of the independent coordinates [unit/s]
-    real(wp), intent(out), optional :: dq(:, :)                     !< (M,n) rates of all coordinates [unit/s]
+    real(wp), intent(in), optional :: rates(:, :)                   !< (I,n) of the independent coordinates [unit of the data file]
+    real(wp), intent(out), optional :: dq(:, :)                     !< (M,n) rates of all coordinates [unit of the data file]
     real(wp), intent(in), optional :: accelerations(:, :)           !< (I,n) of the independent coordinates [unit/s^2]
     real(wp), intent(out), optional :: ddq(:, :)                    !< (M,n) second derivatives of all coordinates [unit/s^2]
     integer, allocatable :: places(:)
@@ -233,7 +233,7 @@ contains
   subroutine move(self, plan, rates, state, accelerations)
     type(followed_positions_type), intent(in) :: self           !< the positions
     type(plan_type), intent(in) :: plan                         !< the plan of the position
-    real(wp), intent(in) :: rates(:)                            !< (I) [unit of the data file/s]
+    real(wp), intent(in) :: rates(:)                            !< (I) [unit of the data file]
     type(state_type), intent(inout) :: state                    !< the position; gets rates and accelerations
     real(wp), intent(in), optional :: accelerations(:)          !< (I) [unit of the data file/s^2]; 0 unless given
     type(block_work_type) :: work
