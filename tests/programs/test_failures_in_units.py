@@ -87,5 +87,6 @@ def test_sentence_in_units(checks, build, tmp_path, program, kind, text, options
         checks.equal(words, found[0][1], f'{kind}, {units}: the words')
         for (value, digits), (expected, more) in zip(numbers, found[0][2]):
             # numbers of few digits are rounded in either unit; those that are small beside others are round-off
-            checks.near(value, expected, 1.1 * 10.0 ** (1 - max(min(digits, more), 1)), f'{kind}, {units}: a number of: {said}', scale=max(abs(expected), 1e-9))
+            checks.near(value, expected, 1.1 * 10.0 ** (1 - max(min(digits, more), 1)), f'{kind}, {units}: a number of: {said}',
+                        scale=max(abs(expected), 1e-9))
     checks.true(any(said[0] != found[0][0] for said in found[1:]), f'{kind}: some numbers differ', found[0][0])

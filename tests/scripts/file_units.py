@@ -14,7 +14,7 @@ FORCES = {'N': 1.0, 'kN': 1e3, 'lbf': 0.45359237 * 9.80665}
 MASSES = {'kg': 1.0, 'g': 1e-3, 't': 1e3, 'lb': 0.45359237}
 ANGLES = {'rad': 1.0, 'deg': math.pi / 180}
 RATES = {'rad/s': 1.0, 'deg/s': math.pi / 180, 'rpm': math.pi / 30}
-WORDS = {**LENGTHS, **FORCES, **MASSES, **ANGLES, 'rpm': math.pi / 30, 'J': 1.0, 'W': 1.0, 's': 1.0, '1': 1.0, 'A': 1.0, 'V': 1.0}
+WORDS = {**LENGTHS, **FORCES, **MASSES, **ANGLES, 'rpm': math.pi / 30, 'J': 1.0, 'W': 1.0, 'Hz': 1.0, 's': 1.0, '1': 1.0, 'A': 1.0, 'V': 1.0}
 
 FIXED = {'point': {'position': 'L'}, 'body': {'mass': 'M', 'centre': 'L', 'inertia': 'M L L'}, 'gravity': {'acceleration': 'L'},
          'pair': {'point': 'L', 'moving_point': 'L', 'pitch': 'L'}, 'coupling': {'radius': 'L', 'radii': 'L', 'pitch': 'L'},

@@ -73,9 +73,9 @@ def same_bits(a, b):
 
 
 @pytest.mark.parametrize('name, text, names', (
-    ('mech9k', random_study(30), (('run', '', '1'), ('crank', 'parameters/', ''), ('rod', 'parameters/', ''), ('stroke', 'quantities/', 'm'),
+    ('mech9k', random_study(30), (('run', '', '1'), ('crank', 'parameters/', 'm'), ('rod', 'parameters/', 'm'), ('stroke', 'quantities/', 'm'),
                                   ('way', 'quantities/', 'm s'), ('exit_code', '', '1'))),
-    ('mech9d', PENDULUM, (('run', '', '1'), ('mass', 'parameters/', ''), ('swing', 'quantities/', 'rad'), ('exit_code', '', '1')))),
+    ('mech9d', PENDULUM, (('run', '', '1'), ('mass', 'parameters/', 'kg'), ('swing', 'quantities/', 'rad'), ('exit_code', '', '1')))),
     ids=('mech9k', 'mech9d'))
 def test_data_sets_are_the_columns_of_the_table(cases, build, name, text, names):
     """They have the run as their named dimension, and units."""

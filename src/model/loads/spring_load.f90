@@ -2,7 +2,6 @@
 module mech9_spring_load
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_integrator
-  use mech9_text, only: to_text
   use mech9_rotation, only: cross
   use mech9_motion_view, only: motion_view_type
   use mech9_motion_change, only: motion_change_type
@@ -87,8 +86,8 @@ contains
     if (length > 0.0_wp) then
       force = (self%stiffness*(length - self%free_length) + self%damping*dot_product(d, rate)/length)/length*d
     else if (abs(self%free_length) > 0.0_wp) then
-      call raise(err, exit_integrator, 'a spring of free length '//to_text(self%free_length)// &
-                 ' m has shrunk to nothing, where its direction is not defined', self%place)
+      call raise(err, exit_integrator, 'a spring with a free length has shrunk to nothing, where its direction is '// &
+                 'not defined', self%place)
     else
       force = self%damping*rate
     end if
