@@ -8,7 +8,6 @@ module mech9_geometry_words
   use mech9_mechanism, only: mechanism_type
   use mech9_loop_geometry, only: oddity_type, find_oddity, none_found, bent_link, not_parallel, not_across, not_concurrent, &
                                  other_height, too_long
-  use mech9_structure, only: structure_type
   use mech9_joint_words, only: link_name
   use mech9_explanation, only: explain
   implicit none
