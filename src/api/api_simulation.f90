@@ -55,7 +55,7 @@ contains
     end if
     if (.not. allocated(err)) then
       handle%units = [(handle%motion%unit(k), k=1, handle%motion%coordinates())]
-      handle%rate_units = [(handle%motion%rate_unit(k), k=1, handle%motion%coordinates())]
+      handle%rate_units = [(handle%motion%unit(k, of_rate=.true.), k=1, handle%motion%coordinates())]
       simulation = c_loc(handle)
     end if
     code = end_analysis(error, err, moved, merge(kinematics, dynamics, with_forces == 0))

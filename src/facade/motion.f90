@@ -56,7 +56,6 @@ module mech9_motion
     procedure :: go_to_state
     procedure :: free_coordinates
     procedure :: unit
-    procedure :: rate_unit
     procedure :: point
     procedure :: coupling_force
     procedure :: energies
@@ -296,30 +295,20 @@ contains
   end subroutine take_coordinates
 
   !> Size of the unit that coordinate k has in the data file [rad, m]; not a number where there is none.
-  real(wp) function unit(self, k)
+  real(wp) function unit(self, k, of_rate)
     class(motion_type), intent(in), target :: self   !< the motion
     integer, intent(in) :: k                         !< number of the coordinate
+    logical, intent(in), optional :: of_rate         !< that of its rate instead; not unless given
     type(plan_type), pointer :: plan
     type(state_type), pointer :: state
 
     unit = ieee_value(unit, ieee_quiet_nan)
     if (.not. allocated(self%simulation)) return
     call self%simulation%present(plan, state)
-    if (k >= 1 .and. k <= plan%n_coordinates) unit = plan%result_unit(k)
+    if (k < 1 .or. k > plan%n_coordinates) return
+    unit = plan%result_unit(k)
+    if (present(of_rate)) unit = merge(plan%rate_unit(k), unit, of_rate)
   end function unit
-
-  !> Unit of the rate of a coordinate in the data file [rad/s, m/s]; not a number where there is none.
-  real(wp) function rate_unit(self, k)
-    class(motion_type), intent(in), target :: self   !< the motion
-    integer, intent(in) :: k                         !< number of the coordinate
-    type(plan_type), pointer :: plan
-    type(state_type), pointer :: state
-
-    rate_unit = ieee_value(rate_unit, ieee_quiet_nan)
-    if (.not. allocated(self%simulation)) return
-    call self%simulation%present(plan, state)
-    if (k >= 1 .and. k <= plan%n_coordinates) rate_unit = plan%rate_unit(k)
-  end function rate_unit
 
   !> Give a number of a load or a motor another value, from the present time on. The motion stays as it is where this fails: with
   !> exit_usage where no motion under forces is started, or for a number of another group, with exit_data for a name that is not known
