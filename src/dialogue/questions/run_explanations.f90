@@ -76,6 +76,12 @@ module mech9_run_explanations
                   'So many sets of values are drawn. Means become exact with the root of this number.', '1000'), &
     explanation_type('study', 'seed', 'random latin sobol', &
                   'The same seed draws the same values, on any machine and in any order. Another one draws others.', '2'), &
+    explanation_type('study', 'carry', 'grid list', &
+                  'Each run can begin where the one before ended, as when a knob is turned slowly: forwards in the order of '// &
+                  'the values, backwards, or both. With a section this makes a bifurcation diagram.', 'both'), &
+    explanation_type('study', 'classes', '', &
+                  'Runs can be told apart by what their motions go to, a position of rest or a periodic motion: a column of '// &
+                  'the study has its number.', 'yes'), &
     explanation_type('study', 'file', 'list', &
                   'Each line of this file has the values of all parameters, in the order of the parameters.', 'designs.dat'), &
     explanation_type('objective', 'kind', '', &

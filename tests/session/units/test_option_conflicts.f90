@@ -75,8 +75,8 @@ contains
   !> Each option alone is good, but for those that belong to others.
   subroutine good_options(tester)
     type(tester_type), intent(inout) :: tester   !< counts the checks
-    character(len=*), parameter :: partners(10) = [character(len=12) :: 'part', 'threads', 'continue', 'mode', 'at', 'out', 'merge', &
-                                                  'dakota', 'import', 'edit']
+    character(len=*), parameter :: partners(10) = [character(len=12) :: 'part', 'threads', 'continue', 'mode', 'at', 'out', &
+                                                  'merge', 'dakota', 'import', 'edit']
     integer :: i
 
     do i = 1, size(options_table)
