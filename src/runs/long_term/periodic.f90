@@ -86,9 +86,6 @@ contains
       call raise(err, exit_data, 'every independent coordinate is driven, so that the motion is periodic as its drives are; '// &
                  'leave out --periodic, or a &drive')
       if (size(model%problem%drives) > 0) err%place = model%problem%drives(1)%drive%place
-    else if (model%mechanism%has_frictions()) then
-      call raise(err, exit_data, 'periodic motions are not known where pairs have friction; leave the group out, or use a '// &
-                 'damping of &load in its place', model%mechanism%frictions(1)%place)
     else if (model%mechanism%has_contacts()) then
       call raise(err, exit_data, 'periodic motions are not known where links may touch each other; leave the group &contact '// &
                  'out, or use a compliant &stop in its place', model%mechanism%contacts(1)%place)
