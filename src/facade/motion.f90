@@ -298,7 +298,7 @@ contains
   real(wp) function unit(self, k, of_rate)
     class(motion_type), intent(in), target :: self   !< the motion
     integer, intent(in) :: k                         !< number of the coordinate
-    logical, intent(in), optional :: of_rate         !< that of its rate instead; not unless given
+    logical, intent(in), optional :: of_rate         !< the unit is that of its rate; not unless given
     type(plan_type), pointer :: plan
     type(state_type), pointer :: state
 

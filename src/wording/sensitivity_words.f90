@@ -20,6 +20,7 @@ contains
   pure subroutine explain_sensitivity(failure, text)
     type(failure_type), intent(in) :: failure             !< any kind
     character(len=:), allocatable, intent(inout) :: text  !< the message
+    character(len=:), allocatable :: cause
 
     select case (failure%kind)
     case (failure_no_neighbours)
@@ -42,7 +43,8 @@ contains
       text = 'derivatives by the parameters are not computed with friction, as of friction '//to_text(failure%number)// &
              '. Leave out the friction, the parameters, or sensitivities and gradients'
     case (failure_event_sensitivity)
-      text = 'derivatives by the parameters do not exist at t = '//to_text(failure%t, 10)//' s: '//cause_at_event(failure)// &
+      call find_cause(failure, cause)
+      text = 'derivatives by the parameters do not exist at t = '//to_text(failure%t, 10)//' s: '//cause// &
              '. End the run before, or leave out sensitivities and gradients'
     case (failure_angles_sensitivity)
       text = 'derivatives by the parameters are not computed at t = '//to_text(failure%t, 10)//' s, where the motion goes on '// &
@@ -58,10 +60,10 @@ contains
     end select
   end subroutine explain_sensitivity
 
-  !> Why an event has no derivatives.
-  pure function cause_at_event(failure) result(text)
-    type(failure_type), intent(in) :: failure             !< the failure
-    character(len=:), allocatable :: text
+  !> Find words for the cause for which an event has no derivatives.
+  pure subroutine find_cause(failure, text)
+    type(failure_type), intent(in) :: failure                     !< the failure
+    character(len=:), allocatable, intent(out) :: text            !< the words
 
     select case (failure%limit)
     case (1)
@@ -82,5 +84,5 @@ contains
       text = 'the pair of friction '//to_text(failure%number)//' is at rest without an acceleration, or at the start with a '// &
              'rate that parameters change'
     end select
-  end function cause_at_event
+  end subroutine find_cause
 end module mech9_sensitivity_words

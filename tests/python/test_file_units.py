@@ -1,6 +1,6 @@
 """The package with mechanisms whose files name units: names of units, arrays, numbers, positions, simulations, studies.
 
-Compares the package with itself in part: one mechanism in SI and in other units; closed forms are formulas.
+Compares the program with itself: one mechanism in SI and in other units; closed forms are formulas.
 """
 import math
 

@@ -28,7 +28,7 @@ contains
     integer, intent(in) :: run              !< number of the run, 1 to `runs`
 
     set_of = run
-    if (self%carry == 'backwards' .or. run > self%sets) set_of = self%runs + 1 - run
+    if (self%carry == 'backwards' .or. (self%carry == 'both' .and. run > self%sets)) set_of = self%runs + 1 - run
   end function set_of
 
   !> Whether each run begins in the state in which the one before ended.

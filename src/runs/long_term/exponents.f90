@@ -26,7 +26,7 @@ module mech9_exponents
   use mech9_model_motion, only: model_motion_type
   implicit none
   private
-  public :: exponents_found_type, find_exponents, count_states, set_directions, cause_at_event
+  public :: exponents_found_type, find_exponents, count_states, set_directions, find_cause_at_event
 
   !> Times at which the running means are kept, and blocks of time for standard errors.
   integer, parameter :: kept_times = 200, blocks = 20
@@ -464,7 +464,7 @@ contains
     if (err%failure%kind == failure_event_sensitivity) then
       number = err%failure%number
       cause = err%failure%limit
-      text = cause_at_event(number, cause)
+      call find_cause_at_event(number, cause, text)
       call raise(err, exit_singular, 'at t = '//to_text(t, 8)//' s '//text//', where exponents do not exist; change the '// &
                  'start a little')
     else if (err%failure%kind == failure_angles_sensitivity) then
@@ -473,11 +473,11 @@ contains
     end if
   end subroutine explain_refusal
 
-  !> Why an event has no derivatives.
-  pure function cause_at_event(number, cause) result(text)
-    integer, intent(in) :: number   !< of the stop or the friction
-    integer, intent(in) :: cause    !< one of those of mech9_event_variation
-    character(len=:), allocatable :: text
+  !> Find words for the cause for which an event has no derivatives.
+  pure subroutine find_cause_at_event(number, cause, text)
+    integer, intent(in) :: number                           !< of the stop or the friction
+    integer, intent(in) :: cause                            !< one of those of mech9_event_variation
+    character(len=:), allocatable, intent(out) :: text      !< the words
 
     select case (cause)
     case (several_impacts)
@@ -491,5 +491,5 @@ contains
     case default
       text = 'stop '//to_text(number)//' is met without a rate'
     end select
-  end function cause_at_event
+  end subroutine find_cause_at_event
 end module mech9_exponents

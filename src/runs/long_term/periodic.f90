@@ -17,7 +17,7 @@ module mech9_periodic
   use mech9_state, only: state_type, copy_state
   use mech9_simulation, only: interruption_type
   use mech9_model_motion, only: model_motion_type
-  use mech9_exponents, only: cause_at_event
+  use mech9_exponents, only: find_cause_at_event
   use mech9_law_periods, only: law_period_type, find_law_period, fit_period
   use mech9_period_map, only: period_map_type
   use mech9_periodic_motion, only: periodic_motion_type, find_multipliers, judge_stability, same_motion, unstable
@@ -551,7 +551,7 @@ contains
     if (err%failure%kind == failure_event_sensitivity) then
       number = err%failure%number
       cause = err%failure%limit
-      text = cause_at_event(number, cause)
+      call find_cause_at_event(number, cause, text)
       call raise(err, exit_singular, 'at t = '//to_text(t, 8)//' s '//text//', where '// &
                  'the derivatives by which periodic motions are found do not exist; change the start a little')
     else if (err%failure%kind == failure_angles_sensitivity) then

@@ -38,9 +38,11 @@ contains
     layout%definition = 'program mech9k'//achar(10)//'&study'//achar(10)
     layout%runs = runs
     layout%part = part
-    allocate (layout%parameters(2), layout%quantities(1), layout%units(1), layout%meanings(1), layout%columns(0))
+    allocate (layout%parameters(2), layout%parameter_units(2), layout%columns(0))
+    allocate (layout%quantities(1), layout%units(1), layout%meanings(1))
     do i = 1, 2
       layout%parameters(i)%text = achar(96 + i)
+      layout%parameter_units(i)%text = 'mm'
     end do
     layout%quantities(1)%text = 's'
     layout%units(1)%text = 'm'
