@@ -386,12 +386,9 @@ class Mechanism:
         return Periodic(found['period'], multipliers_of(found), found['stability'], run, tuple(run.report.get('periodic_motions', [found])))
 
     def branch(self, parameter: str, forces: bool = True, **words: Any) -> Branches:
-        """Branches of positions over a parameter: of rest, or with forces=False positions of a driven mechanism. It takes the words of
-        &branch, as low=0 and high=20; they stand in place of all groups &branch for this call alone."""
-        moved = self
-        if words:
-            moved = self.copy().remove('branch')
-            moved.add('branch', parameter=parameter, **words)
+        """Branches over a parameter: positions of rest, periodic motions with of='periodic', or with forces=False positions of a driven
+        mechanism. It takes the words of &branch, as low=0 and high=20; they stand in place of all groups &branch for this call alone."""
+        moved = self.copy().remove('branch').add('branch', parameter=parameter, **words) if words else self
         found = moved._results(lib.branch, lambda m, stop, out: (m, text_of(parameter), int(forces), stop, out))
         return Branches(parameter, found.names, found.units, found.table, found.report.get('branches', []))
 

@@ -25,7 +25,7 @@ contains
       associate (branch => found%branches(b))
         call json%begin_object()
         call json%add('branch', b)
-        call json%add('of', trim(merge('equilibrium', 'position   ', found%at_rest(found%groups(b)))))
+        call json%add('of', trim(found%of(found%groups(b))))
         call json%add('points', branch%count)
         call json%add('closed', branch%ends(2)%reason == ends_closed)
         call json%begin_array('ends')

@@ -74,7 +74,7 @@ contains
 
     if (model%mechanism%title /= '') write (error_unit, '(a)') model%mechanism%title
     call print_branches(error_unit, found)
-    if (any(found%at_rest)) call print_left_out(error_unit, model%mechanism)
+    if (any(found%of == 'equilibrium')) call print_left_out(error_unit, model%mechanism)
   end subroutine tell
 
   !> Write the table.

@@ -341,7 +341,7 @@ BAD = [
     (SPRING.replace(', low=-8, high=8', ''), 'F', "&branch parameter='F', low=1 /\n", 3, "the parameter 'F' has no range"),
     (SPRING, 'F', "&branch parameter='F', low=1 /\n", 3, 'outside its range, 1 to 8'),
     (SPRING, 'F', "&branch parameter='F', low=9, high=1 /\n", 3, 'needs high larger than low'),
-    (SPRING, 'F', "&branch parameter='F', of='periodic' /\n", 3, 'branches of periodic motions are not known yet'),
+    (SPRING, 'F', "&branch parameter='F', of='periodic' /\n", 3, 'no drive, load or motor follows time'),
     (SPRING.replace("kind='spring', links=1,2, position=0.8,0,0, stiffness=100, free_length=1, damping=0.5", "kind='force', link=2, force=0,3,0"),
      'F', '', 5, 'no position of equilibrium was found'),
     (SPRING + "&drive coordinate=1, kind='polynomial', coefficients=0.6 /\n", 'F', "&branch parameter='F', of='equilibrium' /\n", 3,

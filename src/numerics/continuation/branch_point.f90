@@ -143,44 +143,48 @@ contains
     step = b(:, 1)
   end subroutine find_step
 
-  !> The direction of the branch that crosses another one. `found` is false where none crosses, or several do.
-  subroutine find_crossing(branch_point, scale, along, crossing, found)
+  !> The directions of the two branches that cross at a branch point. `found` is false where none crosses, or several do.
+  subroutine find_crossing(branch_point, scale, along, known, crossing, found)
     type(branch_point_type), intent(in) :: branch_point   !< exact
     real(wp), intent(in) :: scale                         !< size of the derivatives of the equations
-    real(wp), intent(in) :: along(:)                      !< (m) direction of the known branch, as an image
+    real(wp), intent(in) :: along(:)                      !< (m) near the direction of the known branch, as an image
+    real(wp), intent(out) :: known(:)                     !< (m) of the known branch, of length 1
     real(wp), intent(out) :: crossing(:)                  !< (m) of the other one, of length 1
     logical, intent(out) :: found                         !< there is one
     real(wp), allocatable :: vectors(:, :)
-    real(wp), dimension(size(branch_point%point%place)) :: known, other, direction
-    real(wp) :: left(size(branch_point%left)), images(size(along), 2), a, b, c, largest
+    real(wp) :: left(size(branch_point%left)), images(size(along), 2), a, b, c, largest, root
+    real(wp) :: weights(2, 2)
+    integer :: i
 
+    known = along
     crossing = 0.0_wp
     call null_vectors(branch_point%point, scale, vectors, left)
     found = size(vectors, 2) == 2
     if (.not. found) return
     associate (second => branch_point%second, slopes => branch_point%point%slopes)
-      images(:, 1) = unit(matmul(slopes, vectors(:, 1)))
-      images(:, 2) = matmul(slopes, vectors(:, 2))
       vectors(:, 1) = vectors(:, 1)/norm2(matmul(slopes, vectors(:, 1)))
-      a = dot_product(images(:, 1), images(:, 2))
-      vectors(:, 2) = vectors(:, 2) - a*vectors(:, 1)
+      images(:, 1) = matmul(slopes, vectors(:, 1))
+      vectors(:, 2) = vectors(:, 2) - dot_product(images(:, 1), matmul(slopes, vectors(:, 2)))*vectors(:, 1)
       vectors(:, 2) = vectors(:, 2)/norm2(matmul(slopes, vectors(:, 2)))
-      images(:, 2) = unit(matmul(slopes, vectors(:, 2)))
-      a = dot_product(images(:, 1), along)
-      b = dot_product(images(:, 2), along)
-      known = (a*vectors(:, 1) + b*vectors(:, 2))/hypot(a, b)
-      other = (a*vectors(:, 2) - b*vectors(:, 1))/hypot(a, b)
-      a = dot_product(known, matmul(second, known))
-      b = dot_product(known, matmul(second, other))
-      c = dot_product(other, matmul(second, other))
-      largest = max(abs(a), abs(b), abs(c))
-      ! (known + x other) is a direction for a + 2 b x + c x^2 = 0, and x = 0 is one
-      found = abs(b) > second_order*largest
-      if (.not. found) return
-      if (abs(c) <= second_order*largest) c = 0.0_wp
-      direction = 2.0_wp*b*other - c*known
-      crossing = unit(matmul(slopes, direction))
+      images(:, 2) = matmul(slopes, vectors(:, 2))
+      ! a direction x first + y second has a x^2 + 2 b x y + c y^2 = 0
+      a = dot_product(vectors(:, 1), matmul(second, vectors(:, 1)))
+      b = dot_product(vectors(:, 1), matmul(second, vectors(:, 2)))
+      c = dot_product(vectors(:, 2), matmul(second, vectors(:, 2)))
     end associate
+    largest = max(abs(a), abs(b), abs(c))
+    found = b**2 - a*c > (second_order*largest)**2
+    if (.not. found) return
+    ! the root of the larger sum, and the other one by the product of both
+    root = -(b + sign(sqrt(b**2 - a*c), b))
+    weights = reshape([root, a, c, root], [2, 2])
+    images = matmul(images, weights)
+    do i = 1, 2
+      images(:, i) = unit(images(:, i))
+    end do
+    i = maxloc(abs(matmul(along, images)), dim=1)
+    known = images(:, i)*sign(1.0_wp, dot_product(along, images(:, i)))
+    crossing = images(:, 3 - i)
   end subroutine find_crossing
 
   !> A vector of length 1.

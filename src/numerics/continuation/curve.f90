@@ -9,6 +9,10 @@ module mech9_curve
   implicit none
   private
   public :: curve_type, curve_point_type, verdict_type
+  public :: regular, fold, branching, hopf, period_doubling, torus
+
+  !> Kinds of points, as tables have them.
+  integer, parameter :: regular = 0, fold = 1, branching = 2, hopf = 3, period_doubling = 4, torus = 5
 
   !> A point near a curve, with what is known of the equations there.
   type :: curve_point_type
@@ -38,6 +42,7 @@ module mech9_curve
     procedure(changed), deferred :: change_unknowns
     procedure(judged), deferred :: judge
     procedure :: gap => no_gap
+    procedure :: kind_of_crossing => always_hopf
     procedure :: is_stopped => never_stopped
   end type curve_type
 
@@ -78,6 +83,14 @@ contains
 
     gap = 1.0_wp + 0.0_wp*size(point%z)*self%n
   end function no_gap
+
+  !> The kind of a point at which a pair of roots crosses the imaginary axis.
+  integer function always_hopf(self, point) result(kind)
+    class(curve_type), intent(inout) :: self            !< the problem
+    type(curve_point_type), intent(in) :: point         !< on the curve
+
+    kind = hopf + 0*size(point%z)*self%n
+  end function always_hopf
 
   !> Whether the work shall stop.
   logical function never_stopped(self) result(stopped)

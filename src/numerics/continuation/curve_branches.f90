@@ -24,7 +24,7 @@ contains
     type(branch_point_type), allocatable :: known(:)
     type(curve_branch_type) :: branch
     type(curve_point_type) :: from
-    real(wp) :: crossing(size(start%z))
+    real(wp), dimension(size(start%z)) :: along, crossing
     integer :: i
     logical :: found
 
@@ -38,7 +38,8 @@ contains
     do while (i <= size(known))
       if (size(branches) >= settings%branches .or. any(branch%ends%reason == ends_stopped)) exit
       found = known(i)%is_polished
-      if (found) call find_crossing(known(i), curve%scale, known(i)%directions(:, 1), crossing, found)
+      if (found) call find_crossing(known(i), curve%scale, known(i)%directions(:, 1), along, crossing, found)
+      if (found) known(i)%directions(:, 1) = along
       if (.not. found) left_out = left_out + 1
       if (found) found = .not. is_known(known(i), crossing)
       if (found) then

@@ -7,7 +7,7 @@ module mech9_curve_tracing
     same_direction, near_special
   use mech9_curve, only: curve_type, curve_point_type, verdict_type
   use mech9_curve_step, only: correction_type, correct, correct_along, set_direction
-  use mech9_special_points, only: regular, fold, branching, hopf, range_end, test_of, locate, growing_pairs, locate_hopf, &
+  use mech9_special_points, only: regular, fold, branching, range_end, test_of, locate, growing_pairs, locate_hopf, &
     growing_reals, locate_crossings
   use mech9_branch_point, only: branch_point_type, polish_branch_point
   use mech9_curve_branch, only: curve_branch_type, curve_settings_type, ends_low, ends_high, ends_points, ends_closed, ends_range, &
@@ -170,6 +170,7 @@ contains
       end do
       if (next == 0) exit
       if (events(next)%kind == branching) then
+        call keep_direction(a, b, events(next)%point)
         call polish_branch_point(curve, events(next)%point, found)
         events(next)%point = found%point
         met = [met, found]
@@ -209,13 +210,27 @@ contains
       if (growing_pairs(before) /= growing_pairs(behind)) then
         call locate_hopf(curve, a, length, [growing_pairs(before), growing_pairs(behind)], events(3)%distance, events(3)%point, &
                          is_there)
-        if (is_there) events(3)%kind = hopf
+        if (is_there) events(3)%kind = curve%kind_of_crossing(events(3)%point)
       else if (abs(growing_reals(before) - growing_reals(behind)) > 1 .and. all(events%kind == regular)) then
         call locate_crossings(curve, a, length, growing_reals(before), events(3)%distance, events(3)%point, is_there)
         if (is_there) events(3)%kind = branching
       end if
     end subroutine judge_behind
   end subroutine pass_events
+
+  !> Keep the direction of a branch at a branch point within a step: so near to it the equations may tell that of the other branch. The way
+  !> from one end of the step to the other is not far from it.
+  pure subroutine keep_direction(a, b, point)
+    type(curve_point_type), intent(in) :: a            !< the point before
+    type(curve_point_type), intent(in) :: b            !< the point behind
+    type(curve_point_type), intent(inout) :: point     !< near the branch point, with a direction
+    real(wp) :: way(size(a%z))
+
+    way = (b%z - a%z)/norm2(b%z - a%z)
+    if (dot_product(way, point%direction) >= most_turn) return
+    point%direction = way
+    point%tangent = way(point%place)
+  end subroutine keep_direction
 
   !> Find where a branch ends within a step: where it began, at a limit of the parameter, or where solutions lose their meaning.
   subroutine find_end(curve, start, settings, a, b, length, last, branch)

@@ -3,15 +3,13 @@ module mech9_special_points
   use mech9_kinds, only: wp
   use mech9_false_position, only: false_position_type, new_false_position
   use mech9_curve_tolerances, only: round_off_step, neutral_root, real_root
-  use mech9_curve, only: curve_type, curve_point_type, verdict_type
+  use mech9_curve, only: curve_type, curve_point_type, verdict_type, regular, fold, branching, hopf, period_doubling, torus
   use mech9_curve_step, only: correction_type, correct_along, set_direction, branch_test
   implicit none
   private
   public :: regular, fold, branching, hopf, period_doubling, torus, range_end, test_of, locate, growing_pairs, locate_hopf, &
     growing_reals, locate_crossings
 
-  !> Kinds of points, as tables have them.
-  integer, parameter :: regular = 0, fold = 1, branching = 2, hopf = 3, period_doubling = 4, torus = 5
   !> The end of the range in which solutions have a meaning, which no table has.
   integer, parameter :: range_end = 6
   !> Largest number of trials for one point.

@@ -1,4 +1,4 @@
-!> Branches of positions of a model over one of its parameters: what --branch finds.
+!> Branches of positions and of periodic motions of a model over one of its parameters: what --branch finds.
 module mech9_branches
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, add_place, exit_usage, exit_data, exit_singular, exit_interrupted
@@ -16,12 +16,15 @@ module mech9_branches
   use mech9_columns, only: columns_type
   use mech9_explained_assembly, only: assemble_model
   use mech9_rest, only: rest_type
-  use mech9_curve, only: curve_point_type
+  use mech9_curve, only: curve_type, curve_point_type
   use mech9_curve_step, only: first_direction
   use mech9_curve_branch, only: curve_branch_type, curve_settings_type, ends_stopped
   use mech9_curve_branches, only: find_curve_branches => find_branches
   use mech9_single_parameter, only: single_parameter_type, new_single_parameter
   use mech9_position_curve, only: position_curve_type, new_position_curve, begin_curve
+  use mech9_periodic, only: periodic_found_type, find_periodic
+  use mech9_law_periods, only: law_period_type, find_law_period
+  use mech9_periodic_curve, only: periodic_curve_type, begin_periodic_curve
   implicit none
   private
   public :: branches_found_type, find_branches, columns_of_branches
@@ -35,7 +38,7 @@ module mech9_branches
     type(curve_branch_type), allocatable :: branches(:)    !< in the order of the table
     integer, allocatable :: groups(:)                      !< (branches) number of the group among those of this parameter
     real(wp), allocatable :: low(:), high(:)               !< (groups) range of the parameter, in the units of the data file
-    logical, allocatable :: at_rest(:)                     !< (groups) positions of rest; else of given independent coordinates
+    character(len=11), allocatable :: of(:)                !< (groups) equilibrium, position or periodic
     integer :: left_out = 0                                !< branch points from which no branch was followed: they are not simple
     character(len=:), allocatable :: parameter             !< name of the parameter
   contains
@@ -58,7 +61,7 @@ contains
     integer :: number, i
 
     found%parameter = name
-    allocate (found%branches(0), found%groups(0), found%low(0), found%high(0), found%at_rest(0), found%stable(0))
+    allocate (found%branches(0), found%groups(0), found%low(0), found%high(0), found%of(0), found%stable(0))
     call find_parameter(model, name, number, err)
     if (allocated(err)) return
     call list_requests(model, model%parameters(number), requests)
@@ -67,7 +70,7 @@ contains
       if (allocated(err)) return
     end do
     found%columns = columns_of_branches(model, model%parameters(number), &
-                                        any([(requests(i)%of == 'equilibrium', i=1, size(requests))]))
+                                        any([(requests(i)%of /= 'position', i=1, size(requests))]))
     allocate (found%rows(found%columns%count, 0))
     do i = 1, size(requests)
       call follow(model, variable, number, requests(i), i, found, err, interruption)
@@ -134,6 +137,7 @@ contains
     type(parameter_type), intent(in) :: parameter             !< the parameter
     type(branch_request_type), intent(inout) :: request       !< the group
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
+    type(law_period_type) :: laws
     logical :: any_free
 
     if (any(parameter%name == [character(len=6) :: 'branch', 'point', 'growth', 'type']) .or. is_heading(model, parameter%name)) &
@@ -144,11 +148,8 @@ contains
     if (request%of == '') request%of = trim(merge('equilibrium', 'position   ', any_free))
     if (.not. request%has_low .and. parameter%has_range) request%low = parameter%low
     if (.not. request%has_high .and. parameter%has_range) request%high = parameter%high
-    if (request%of == 'periodic') then
-      call raise(err, exit_data, 'branches of periodic motions are not known yet; of=''equilibrium'' has positions of rest', &
-                 request%place)
-    else if (request%of == 'equilibrium' .and. .not. any_free) then
-      call raise(err, exit_data, 'every independent coordinate is driven, so that none can come to rest; leave out a &drive, '// &
+    if (request%of /= 'position' .and. .not. any_free) then
+      call raise(err, exit_data, 'every independent coordinate is driven, so that no motion is free; leave out a &drive, '// &
                  'or take of=''position''', request%place)
     else if (.not. parameter%has_range .and. .not. (request%has_low .and. request%has_high)) then
       call raise(err, exit_data, 'the parameter '''//parameter%name//''' has no range; give low and high in its &branch or '// &
@@ -162,6 +163,11 @@ contains
                  '; give value= in its &parameter within it', request%place)
     else if (request%of == 'equilibrium') then
       call refuse_parts(model, err)
+    else if (request%of == 'periodic') then
+      call find_law_period(model, laws, err)
+      if (.not. (allocated(err) .or. laws%follows_time)) &
+        call raise(err, exit_data, 'no drive, load or motor follows time, and branches of periodic motions with a period of '// &
+                   'their own are not known; --periodic finds single ones', request%place)
     end if
   end subroutine complete_request
 
@@ -203,41 +209,87 @@ contains
     type(branches_found_type), intent(inout) :: found                !< gets the branches
     type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
     class(interruption_type), intent(in), optional :: interruption   !< is asked whether the work shall stop
-    type(position_curve_type), pointer :: curve
+    type(position_curve_type), pointer :: positions
+    type(periodic_curve_type), pointer :: motions
     type(single_parameter_type), pointer :: single
     type(curve_point_type) :: start
+
+    allocate (single)
+    call new_single_parameter(variable, model, number, single)
+    if (request%of == 'periodic') then
+      allocate (motions)
+      call begin_motions(model, single, model%parameters(number)%value, request, motions, start, err, interruption)
+      if (.not. allocated(err)) &
+        call trace(model, motions, motions%range, motions%unit, start, request, group, found, err)
+      call motions%map%close()
+      deallocate (motions)
+    else
+      allocate (positions)
+      call begin(model, single, model%parameters(number)%value, request, positions, start, err)
+      if (.not. allocated(err)) then
+        if (present(interruption)) allocate (positions%interruption, source=interruption)
+        call trace(model, positions, positions%range, positions%plan%unit_of, start, request, group, found, err)
+      end if
+      deallocate (positions)
+    end if
+    deallocate (single)
+  end subroutine follow
+
+  !> Trace the branches from a start. Fails where several begin there, and with exit_interrupted where the work is stopped.
+  subroutine trace(model, curve, range, unit, start, request, group, found, err)
+    type(model_type), intent(in) :: model                      !< the model
+    class(curve_type), intent(inout) :: curve                  !< the problem
+    real(wp), intent(in) :: range                              !< of the parameter, in the units of the data file
+    real(wp), intent(in) :: unit(:)                            !< (M or more) of the coordinates [rad, m]
+    type(curve_point_type), intent(inout) :: start             !< the first point
+    type(branch_request_type), intent(in) :: request           !< the group
+    integer, intent(in) :: group                               !< its number
+    type(branches_found_type), intent(inout) :: found          !< gets the branches
+    type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
     type(curve_settings_type) :: settings
     type(curve_branch_type), allocatable :: branches(:)
     integer :: left_out, directions
 
-    allocate (curve, single)
-    call new_single_parameter(variable, model, number, single)
-    call begin(model, single, model%parameters(number)%value, request, curve, start, err)
-    if (.not. allocated(err)) then
-      if (present(interruption)) allocate (curve%interruption, source=interruption)
-      call first_direction(start, directions)
-      if (directions > 1) &
-        call raise(err, exit_singular, 'at the start branches meet, or the mechanism can move without any force that holds it; '// &
-                   'give another value= of the parameter, or a spring', request%place)
+    call first_direction(start, directions)
+    if (directions > 1) then
+      call raise(err, exit_singular, 'at the start branches meet, or the mechanism can move without any force that holds it; '// &
+                 'give another value= of the parameter, or a spring', request%place)
+      return
     end if
-    if (.not. allocated(err)) then
-      settings%step = request%step
-      settings%points = request%points
-      settings%low = request%low/curve%range
-      settings%high = request%high/curve%range
-      call find_curve_branches(curve, start, request%switch, settings, branches, left_out)
-      found%left_out = found%left_out + left_out
-      found%low = [found%low, request%low]
-      found%high = [found%high, request%high]
-      found%at_rest = [found%at_rest, curve%at_rest]
-      call put_rows(model, curve, branches, size(found%branches), found)
-      found%groups = [found%groups, spread(group, 1, size(branches))]
-      found%branches = [found%branches, branches]
-      if (any([branches%ends(1)%reason, branches%ends(2)%reason] == ends_stopped)) &
-        call raise(err, exit_interrupted, 'interrupted; the branches that were found until then are written')
-    end if
-    deallocate (curve, single)
-  end subroutine follow
+    settings%step = request%step
+    settings%points = request%points
+    settings%low = request%low/range
+    settings%high = request%high/range
+    call find_curve_branches(curve, start, request%switch, settings, branches, left_out)
+    found%left_out = found%left_out + left_out
+    found%low = [found%low, request%low]
+    found%high = [found%high, request%high]
+    found%of = [character(len=11) :: found%of, request%of]
+    call put_rows(model, curve%m, range, unit, branches, size(found%branches), found)
+    found%groups = [found%groups, spread(group, 1, size(branches))]
+    found%branches = [found%branches, branches]
+    if (any([branches%ends(1)%reason, branches%ends(2)%reason] == ends_stopped)) &
+      call raise(err, exit_interrupted, 'interrupted; the branches that were found until then are written')
+  end subroutine trace
+
+  !> Find the periodic motion at which branches begin. Fails where there is none.
+  subroutine begin_motions(model, single, value, request, curve, start, err, interruption)
+    type(model_type), intent(in) :: model                            !< the model
+    type(single_parameter_type), intent(in), target :: single        !< the model as a function of the parameter
+    real(wp), intent(in) :: value                                    !< of the parameter
+    type(branch_request_type), intent(in) :: request                 !< the group
+    type(periodic_curve_type), intent(inout) :: curve                !< gets the problem
+    type(curve_point_type), intent(inout) :: start                   !< gets the first point
+    type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
+    class(interruption_type), intent(in), optional :: interruption   !< is asked whether the work shall stop
+    type(periodic_found_type) :: found
+
+    if (present(interruption)) allocate (curve%interruption, source=interruption)
+    call find_periodic(model, found, err, interruption)
+    if (.not. allocated(err)) &
+      call begin_periodic_curve(single, model, found%motions(1), value, request%high - request%low, curve, start, err)
+    if (allocated(err)) call add_place(err, place=request%place)
+  end subroutine begin_motions
 
   !> Find the start of the branches. Fails where there is none.
   subroutine begin(model, single, value, request, curve, start, err)
@@ -283,9 +335,11 @@ contains
   end subroutine begin
 
   !> Put the points of branches into rows of the table.
-  subroutine put_rows(model, curve, branches, before, found)
+  subroutine put_rows(model, last, range, unit, branches, before, found)
     type(model_type), intent(in) :: model                  !< the model
-    type(position_curve_type), intent(in) :: curve         !< the problem
+    integer, intent(in) :: last                            !< component of an image that is the parameter
+    real(wp), intent(in) :: range                          !< its range, in the units of the data file
+    real(wp), intent(in) :: unit(:)                        !< (M or more) of the coordinates [rad, m]
     type(curve_branch_type), intent(in) :: branches(:)     !< its branches
     integer, intent(in) :: before                          !< number of branches before them
     type(branches_found_type), intent(inout) :: found      !< gets the rows
@@ -301,8 +355,8 @@ contains
     do b = 1, size(branches)
       do i = 1, branches(b)%count
         row(1:2) = [real(before + b, wp), real(i, wp)]
-        row(3) = branches(b)%z(curve%m, i)*curve%range
-        row(4:3 + m) = branches(b)%z(:m, i)*curve%plan%unit_of(:m)
+        row(3) = branches(b)%z(last, i)*range
+        row(4:3 + m) = branches(b)%z(:m, i)*unit(:m)
         if (size(row) == m + 5) row(m + 4) = branches(b)%growth(i)
         row(size(row)) = branches(b)%kind(i)
         call found%columns%convert(row)
@@ -318,7 +372,7 @@ contains
   function columns_of_branches(model, parameter, with_growth) result(columns)
     type(model_type), intent(in) :: model               !< the model
     type(parameter_type), intent(in) :: parameter       !< over which the branches are
-    logical, intent(in) :: with_growth                  !< some are of positions of rest
+    logical, intent(in) :: with_growth                  !< some are of positions of rest or of motions
     type(columns_type) :: columns
     integer :: k
 
@@ -332,7 +386,7 @@ contains
     end do
     columns%motion = columns%count
     if (with_growth) call columns%append('growth', '1/s', 'largest real part of the eigenvalues of the linearised equations of '// &
-                                         'motion')
+                                         'motion, or of the logarithms of multipliers over the period')
     call columns%append('type', '', '0 regular, 1 fold, 2 branch point, 3 Hopf, 4 period doubling, 5 torus')
   end function columns_of_branches
 end module mech9_branches

@@ -1,0 +1,131 @@
+"""Branches of periodic motions over a parameter: closed forms of a linear oscillator, the boundary of Kapitza's pendulum, symmetry breaking
+and period doubling of the driven pendulum, against independent integrations; refusals."""
+import json
+
+import numpy as np
+import pytest
+
+from mech9_cases import read_table, run
+
+OSCILLATOR = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&initial coordinate=1, position=0.3 /
+&body link=2, mass=1 /
+&load kind='coordinate', coordinate=1, stiffness=1, damping=0.4 /
+&load kind='coordinate', coordinate=1, force=1, law='harmonic', amplitude=1, angular_frequency=0.5, phase=1.5707963267948966 /
+&time end=1 /
+"""
+PENDULUM = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&initial coordinate=1, position=0.2, velocity=0 /
+&body link=2, mass=1, centre=0,-1,0 /
+&gravity acceleration=0,-1,0 /
+&load kind='coordinate', coordinate=1, damping=0.5 /
+&load kind='coordinate', coordinate=1, force=0.95, law='harmonic', amplitude=1, angular_frequency=0.6666666666666666, phase=1.5707963267948966 /
+&parameter name='g', sets='load(2).force', low=0.9, high=1.1 /
+&branch parameter='g', of='periodic' /
+&time end=1 /
+"""
+KAPITZA = f"""&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=0,1,0 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1 /
+&drive coordinate=1, kind='harmonic', amplitude=0.1, angular_frequency=44, phase=1.5707963267948966 /
+&body link=3, mass=1, centre=0,-1,0 /
+&gravity acceleration=0,-9.81,0 /
+&initial coordinate=2, position={np.pi!r} /
+&parameter name='W', sets='drive.angular_frequency', low=43, high=46 /
+&branch parameter='W', of='periodic' /
+&time end=1 /
+"""
+
+
+def follow(program, folder, text, name, code=0):
+    """Table, branches in the report, and standard error of --branch."""
+    path, report, table = folder / 'follow.nml', folder / 'follow.json', folder / 'follow.dat'
+    path.write_text(text, encoding='utf-8')
+    done = run(program, path, '--branch', name, '--table', table, '--report', report)
+    assert done.returncode == code, done.stderr
+    if code:
+        return None, None, done.stderr
+    return read_table(table.read_text()), json.loads(report.read_text())['branches'], done.stderr
+
+
+def test_resonance(checks, mech9d, tmp_path):
+    """The response of a linear oscillator over the frequency and over the damping; all deviations decay by half the damping."""
+    text = OSCILLATOR + "&parameter name='w', sets='load(2).angular_frequency', low=0.3, high=2 /\n&branch parameter='w', of='periodic', step=0.3 /\n"
+    rows, branches, _ = follow(mech9d, tmp_path, text, 'w')
+    w = rows['w']
+    checks.near([w.min(), w.max()], [0.3, 2.0], 1e-13, 'the whole range')
+    # the derivative by the parameter has a part of the period, which changes with it
+    checks.near(rows['q1'], (1 - w**2)/((1 - w**2)**2 + (0.4*w)**2), 1e-10, 'the place at the start of the period')
+    checks.near(rows['growth'], -0.2, 1e-11, 'the growth')
+    checks.equal([branch['of'] for branch in branches], ['periodic'], 'what is reported')
+    checks.equal(set(rows['type']), {0.0}, 'no special points')
+    text = OSCILLATOR + "&parameter name='c', sets='load(1).damping', low=0.2, high=2 /\n&branch parameter='c', of='periodic', step=0.3 /\n"
+    rows, _, _ = follow(mech9d, tmp_path, text, 'c')
+    checks.near(rows['q1'], 0.75/(0.75**2 + (0.5*rows['c'])**2), 1e-10, 'the place over the damping')
+
+
+def test_kapitza(checks, mech9d, tmp_path):
+    """The top of a pendulum with a vibrating pivot becomes stable at W = 44.39079478, where motions beside it begin."""
+    rows, branches, _ = follow(mech9d, tmp_path, KAPITZA, 'W')
+    points = [point for point in branches[0]['special_points']]
+    checks.equal([point['kind'] for point in points], ['branch point'], 'one special point')
+    # the digits of the reference
+    checks.near(points[0]['value'], 44.39079478, 5e-9, 'where', scale=1)
+    first = rows['branch'] == 1
+    checks.near(rows['q2'][first], np.pi, 1e-12, 'the top')
+    unstable = rows['W'] < 44.39
+    checks.true((rows['growth'][first & unstable] > 1e-3).all(), 'unstable below', rows['growth'])
+    checks.true((np.abs(rows['growth'][first & (rows['W'] > 44.4)]) < 1e-6).all(), 'neutral above', rows['growth'])
+
+
+def test_driven_pendulum(checks, mech9d, tmp_path):
+    """The symmetric motion of the driven pendulum loses its symmetry, and both motions beside it double their period at
+    g = 1.066372862455."""
+    rows, branches, said = follow(mech9d, tmp_path, PENDULUM, 'g')
+    checks.equal(len(branches), 2, 'two branches')
+    kinds = [[point['kind'] for point in branch['special_points']] for branch in branches]
+    checks.equal(kinds, [['branch point'], ['period doubling', 'branch point', 'period doubling']], 'their special points')
+    doublings = [point['value'] for point in branches[1]['special_points'] if point['kind'] == 'period doubling']
+    checks.near(doublings, 1.066372862455, 1e-11, 'the period doubling')
+    checks.true('period doubling at g = 1.06637286246' in said, 'what is told', said)
+    breaking = branches[0]['special_points'][0]['value']
+
+    # the symmetric motion is its own image after half a period: the multiplier of half a period is -1 at the symmetry breaking
+    def half(state, g):
+        """State after half a period, mirrored, by the method of Runge and Kutta."""
+        def rates(t, x):
+            return np.array([x[1], -np.sin(x[0]) - 0.5*x[1] + g*np.cos(2*t/3)])
+
+        x, n = np.array(state, dtype=float), 2000
+        h = 1.5*np.pi/n
+        for i in range(n):
+            t = i*h
+            a = rates(t, x)
+            b = rates(t + h/2, x + h/2*a)
+            c = rates(t + h/2, x + h/2*b)
+            d = rates(t + h, x + h*c)
+            x = x + h/6*(a + 2*b + 2*c + d)
+        return -x
+
+    def slopes(state, g):
+        return np.column_stack([(half(state + e, g) - half(state - e, g))/2e-5 for e in 1e-5*np.eye(2)])
+
+    state = np.array([rows['q1'][rows['branch'] == 1][np.argmin(np.abs(rows['g'][rows['branch'] == 1] - breaking))], 1.9])
+    for _ in range(8):
+        state = state - np.linalg.solve(slopes(state, breaking) - np.eye(2), half(state, breaking) - state)
+    checks.near(np.linalg.det(slopes(state, breaking) + np.eye(2)), 0, 1e-6, 'the multiplier -1 of half a period', scale=1)
+
+
+@pytest.mark.parametrize('text, name, code, words', (
+    (OSCILLATOR.replace("law='harmonic', amplitude=1, angular_frequency=0.5, phase=1.5707963267948966 ", '') +
+     "&parameter name='c', sets='load(1).damping', low=0.2, high=2 /\n&branch parameter='c', of='periodic' /\n", 'c', 3,
+     'no drive, load or motor follows time'),
+    (PENDULUM.replace("kind='revolute', axis=0,0,1 /", "kind='revolute', axis=0,0,1 /\n&drive coordinate=1, kind='harmonic', amplitude=1, "
+                      "angular_frequency=1 /").replace('&initial coordinate=1, position=0.2, velocity=0 /\n', ''), 'g', 3,
+     'every independent coordinate is driven'),
+), ids=('free', 'driven'))
+def test_refusals(checks, mech9d, tmp_path, text, name, code, words):
+    _, _, said = follow(mech9d, tmp_path, text, name, code)
+    checks.true(words in said, words, said)
