@@ -87,8 +87,27 @@ contains
         if (any([(agree(states(:, k), known(:, i), turns, allowed), i=1, k)])) return
       end associate
     end do
-    self%cycles = [self%cycles, cycle_type(states, unit)]
+    call append_cycle(states, unit, self%cycles)
   end function class_of
+
+  !> Append a cycle. By hand: an array constructor would leak (gfortran 12).
+  subroutine append_cycle(states, unit, cycles)
+    real(wp), intent(in) :: states(:, :)                          !< (2 M,points) of the cycle [rad, m]
+    real(wp), intent(in) :: unit(:)                               !< (2 M) that counts as one [rad, m]
+    type(cycle_type), allocatable, intent(inout) :: cycles(:)     !< gets it
+    type(cycle_type), allocatable :: all(:)
+    integer :: i, n
+
+    n = size(cycles)
+    allocate (all(n + 1))
+    do i = 1, n
+      call move_alloc(cycles(i)%states, all(i)%states)
+      call move_alloc(cycles(i)%unit, all(i)%unit)
+    end do
+    all(n + 1)%states = states
+    all(n + 1)%unit = unit
+    call move_alloc(all, cycles)
+  end subroutine append_cycle
 
   !> Whether two states agree.
   pure logical function agree(a, b, turns, allowed)

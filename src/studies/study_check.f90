@@ -36,11 +36,26 @@ contains
         call find_quantities(model, quantities, err)
         if (.not. allocated(err)) call section_of_runs(model, section, err)
         if (.not. allocated(err) .and. model%request%study%classes) &
-          model%request%quantities = [model%request%quantities, quantity_type(name='class', column='', take='class')]
+          call append_class(model%request%quantities)
         if (.not. allocated(err) .and. model%request%study%carries()) call check_carrying(model, err)
       end if
     end associate
   end subroutine check_study
+
+  !> Append the class as a quantity, of which a study finds the number. By hand: an array constructor would leak (gfortran 12).
+  subroutine append_class(quantities)
+    type(quantity_type), allocatable, intent(inout) :: quantities(:)   !< gets it
+    type(quantity_type), allocatable :: all(:)
+    integer :: n
+
+    n = size(quantities)
+    allocate (all(n + 1))
+    all(:n) = quantities
+    all(n + 1)%name = 'class'
+    all(n + 1)%column = ''
+    all(n + 1)%take = 'class'
+    call move_alloc(all, quantities)
+  end subroutine append_class
 
   !> Refuse to carry states on where a run would not begin in the state in which the last one ended.
   subroutine check_carrying(model, err)

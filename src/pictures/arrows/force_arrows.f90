@@ -221,6 +221,7 @@ contains
     real(wp), intent(in) :: most                                 !< largest distance from the origin of link 1 [m]
     type(arrow_type), allocatable, intent(inout) :: arrows(:)    !< gets the poles
     character(len=*), parameter :: middle = '.pole.'
+    type(arrow_type) :: arrow
     real(wp) :: ways(3, film%n_frames)
     integer :: first, last, at, axis
 
@@ -241,7 +242,13 @@ contains
           end do
           where (ieee_is_finite(ways)) ways = ways*mechanism%units%length
           call mark_far(most, ways)
-          call append_arrow(arrow_type(as_pole, pole, 0, 'velocity pole of link '//name(2:at - 1), 1, 0.0_wp, ways), arrows)
+          arrow%style = as_pole
+          arrow%shape = pole
+          arrow%measure = 0
+          arrow%text = 'velocity pole of link '//name(2:at - 1)
+          arrow%link = 1
+          arrow%ways = ways
+          call append_arrow(arrow, arrows)
           last = last - 1
         end if
       end associate

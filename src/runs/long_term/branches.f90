@@ -118,16 +118,24 @@ contains
     type(model_type), intent(in) :: model                                  !< the model
     type(parameter_type), intent(in) :: parameter                          !< the parameter
     type(branch_request_type), allocatable, intent(out) :: requests(:)     !< the group
-    integer :: i
+    logical, allocatable :: is_of(:)
+    integer :: i, n
 
-    allocate (requests(0))
-    if (allocated(model%request%branches)) then
-      do i = 1, size(model%request%branches)
-        if (model%request%branches(i)%parameter == parameter%name) requests = [requests, model%request%branches(i)]
-      end do
-    end if
-    if (size(requests) > 0) return
-    requests = [branch_request_type(parameter=parameter%name, of='', place=parameter%place)]
+    allocate (is_of(0))
+    if (allocated(model%request%branches)) &
+      is_of = [(model%request%branches(i)%parameter == parameter%name, i=1, size(model%request%branches))]
+    ! by hand: array constructors would leak (gfortran 12)
+    allocate (requests(max(1, count(is_of))))
+    n = 0
+    do i = 1, size(is_of)
+      if (.not. is_of(i)) cycle
+      n = n + 1
+      requests(n) = model%request%branches(i)
+    end do
+    if (n > 0) return
+    requests(1)%parameter = parameter%name
+    requests(1)%of = ''
+    requests(1)%place = parameter%place
   end subroutine list_requests
 
   !> Complete what is asked for by the range of the parameter and by the kind of the coordinates. Fails where there is no range, or
