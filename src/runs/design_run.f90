@@ -45,8 +45,9 @@ contains
                                                           !< reached, where it is allocated
     class(interruption_type), intent(inout), optional, target :: interruption   !< is asked whether the run shall stop
     type(run_ending_type), intent(out), optional :: ending   !< the points of the section and the state at the end
-    type(run_type), target :: run
+    class(run_type), allocatable, target :: run
 
+    allocate (run)
     call make_run(model, run, err, rows=rows, interruption=interruption, ending=ending)
     if (.not. allocated(err) .and. size(numbers) > 0) numbers = run%source%quantities%numbers
   end subroutine run_design
@@ -59,9 +60,10 @@ contains
     real(wp), intent(out) :: gradient(:, :)                 !< (parameters,quantities); NaN where a number has no derivative
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     class(interruption_type), intent(inout), optional, target :: interruption   !< is asked whether the run shall stop
-    type(run_type), target :: run
+    class(run_type), allocatable, target :: run
 
     model%request%output%gradients = .true.
+    allocate (run)
     call make_run(model, run, err, variable, interruption=interruption)
     if (allocated(err)) return
     numbers = run%source%quantities%numbers

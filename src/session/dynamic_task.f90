@@ -49,9 +49,9 @@ contains
     type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
     logical, intent(out) :: reported                        !< the run has written the report
     type(kept_rows_type), intent(inout), optional :: kept   !< gets the rows as well, for a look at them after the run
-    type(model_type), target :: used
+    class(model_type), allocatable, target :: used
     type(dynamic_report_type) :: report
-    type(run_type), target :: run
+    class(run_type), allocatable, target :: run
     type(picture_requests_type) :: pictures
     type(free_simulation_type), pointer :: simulation
     type(error_type), allocatable :: err
@@ -84,7 +84,8 @@ contains
     reported = .false.
     if (options%has('check') .or. .not. answers_only(options)) call check_times_of_laws(model, .true., diagnostics)
     if (diagnostics%failed()) return
-    used = model
+    allocate (run)
+    allocate (used, source=model)
     call read_picture_requests(options, model, pictures, err)
     if (.not. allocated(err)) call run%motion%assemble(used, err)
     if (.not. allocated(err) .and. answers_only(options)) then

@@ -62,9 +62,9 @@ contains
     type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
     logical, intent(out) :: reported                        !< the run has written the report
     type(kept_rows_type), intent(inout), optional :: kept   !< gets the rows as well, for a look at them after the run
-    type(model_type), target :: used
+    class(model_type), allocatable, target :: used
     type(kinematic_report_type) :: report
-    type(run_type), target :: run
+    class(run_type), allocatable, target :: run
     type(picture_requests_type) :: pictures
     type(error_type), allocatable :: err
 
@@ -72,7 +72,8 @@ contains
     if (options%has('check') .or. options%has('cam') .or. .not. answers_only(options)) &
       call check_times_of_laws(model, model%program == dynamics .or. model%request%output%with_forces(), diagnostics)
     if (diagnostics%failed()) return
-    used = model
+    allocate (run)
+    allocate (used, source=model)
     call read_picture_requests(options, model, pictures, err)
     if (.not. allocated(err)) call run%motion%assemble(used, err)
     if (allocated(err)) then

@@ -31,15 +31,16 @@ contains
     type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
     logical, intent(out) :: reported                        !< the report is written
     type(kept_rows_type), intent(inout), optional :: kept   !< gets the rows as well
-    type(model_type), target :: used
+    class(model_type), allocatable, target :: used
     type(dynamic_report_type) :: report
-    type(run_type), target :: run
+    class(run_type), allocatable, target :: run
     type(picture_requests_type) :: pictures
     type(periodic_found_type) :: found
     type(error_type), allocatable :: err
 
     reported = .false.
-    used = model
+    allocate (run)
+    allocate (used, source=model)
     call read_picture_requests(options, model, pictures, err)
     if (.not. allocated(err)) call find_periodic(model, found, err, signal_interruption_type())
     if (.not. allocated(err)) then

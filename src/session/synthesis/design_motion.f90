@@ -16,7 +16,7 @@ module mech9_design_motion
 
   type :: design_motion_type
     class(model_type), allocatable :: model   !< with the values of the design, from the positions of its assembly
-    type(run_type) :: run                     !< with its motion assembled
+    class(run_type), allocatable :: run       !< with its motion assembled
   contains
     procedure :: visit
     procedure :: make_film
@@ -33,7 +33,7 @@ contains
     type(design_motion_type), intent(out) :: motion           !< about to begin
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
 
-    allocate (motion%model)
+    allocate (motion%model, motion%run)
     call variable%at(values, motion%model, err)
     if (allocated(err)) return
     motion%model%request = model%request
