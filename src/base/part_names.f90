@@ -4,7 +4,7 @@ module mech9_part_names
   implicit none
   private
   public :: part_names_type, longest_part_name, longest_called, name_in, coordinate_named, link_named, number_columns, &
-    name_column, add_names, has_names, label_of
+    name_column, add_names, has_names, label_of, lengthen
 
   integer, parameter :: longest_part_name = 40                    !< letters of a name
   integer, parameter :: longest_called = longest_part_name + 3    !< with the place of a coordinate in its joint: B(2)
@@ -28,6 +28,19 @@ module mech9_part_names
                                                  'wx', 'wy', 'wz', 'alphax', 'alphay', 'alphaz', 'pole.x', 'pole.y', 'pole.z']
 
 contains
+
+  !> Make a list of names longer.
+  pure subroutine lengthen(list, length)
+    character(len=*), allocatable, intent(inout) :: list(:)    !< the list
+    integer, intent(in) :: length                              !< least length afterwards
+    character(len=len(list)), allocatable :: longer(:)
+
+    if (size(list) >= length) return
+    allocate (longer(max(length, 2*size(list))))
+    longer = ''
+    longer(:size(list)) = list
+    call move_alloc(longer, list)
+  end subroutine lengthen
 
   !> Whether any link or pair has a name.
   pure logical function has_names(names)

@@ -1,6 +1,6 @@
 !> Names of links and pairs in a draft. Its values are numbers; where the user wrote names for them, the data file has names again.
 module mech9_draft_names
-  use mech9_part_names, only: part_names_type, longest_part_name, longest_called, name_in
+  use mech9_part_names, only: part_names_type, longest_part_name, longest_called, name_in, lengthen
   use mech9_text, only: to_text, string_type, join
   use mech9_grammar_rows, only: refers_to, refers_to_link
   use mech9_draft, only: draft_type, draft_group_type, entry_type, integer_of, unquoted
@@ -69,19 +69,6 @@ contains
       if (group%entries(i)%name == name) text = group%entries(i)%text
     end do
   end function value_of
-
-  !> Make a list of names longer.
-  pure subroutine lengthen(list, length)
-    character(len=*), allocatable, intent(inout) :: list(:)    !< the list
-    integer, intent(in) :: length                              !< least length afterwards
-    character(len=len(list)), allocatable :: longer(:)
-
-    if (size(list) >= length) return
-    allocate (longer(max(length, 2*size(list))))
-    longer = ''
-    longer(:size(list)) = list
-    call move_alloc(longer, list)
-  end subroutine lengthen
 
   !> The values of an entry as the data file has them. A number that the user wrote as a name becomes the name that its link or pair
   !> has now, and stays a number where there is none any more.

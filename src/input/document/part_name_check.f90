@@ -4,8 +4,8 @@
 module mech9_part_name_check
   use mech9_text, only: to_text, nearest_name
   use mech9_kinds, only: wp, long
-  use mech9_part_names, only: part_names_type, longest_part_name, longest_called, has_names, link_named, coordinate_named, &
-    number_columns
+  use mech9_part_names, only: part_names_type, longest_part_name, longest_called, has_names, lengthen, link_named, &
+    coordinate_named, number_columns
   use mech9_name_table, only: name_table_type
   use mech9_source, only: span_type
   use mech9_grammar_rows, only: refers_to, refers_to_link, refers_to_coordinate
@@ -161,19 +161,6 @@ contains
       numbers = int(min(max(values%whole, -1_long), 1000000000_long))
     end associate
   end function numbers_under
-
-  !> Make a list of names longer.
-  pure subroutine lengthen(list, length)
-    character(len=*), allocatable, intent(inout) :: list(:)    !< the list
-    integer, intent(in) :: length                              !< least length afterwards
-    character(len=len(list)), allocatable :: longer(:)
-
-    if (size(list) >= length) return
-    allocate (longer(max(length, 2*size(list))))
-    longer = ''
-    longer(:size(list)) = list
-    call move_alloc(longer, list)
-  end subroutine lengthen
 
   !> Replace the names of links and pairs that stand for numbers, and those in names of columns. Unknown ones are reported and become
   !> bad values.
