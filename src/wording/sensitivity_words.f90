@@ -6,13 +6,14 @@ module mech9_sensitivity_words
     failure_singular_sensitivity, failure_opening_parameter
   use mech9_force_gradient_failures, only: failure_jumping_force
   use mech9_integration_failures, only: failure_jump_sensitivity
-  use mech9_event_failures, only: failure_event_sensitivity
+  use mech9_event_failures, only: failure_event_sensitivity, cause_grazing, cause_several_impacts, cause_start_on_stop, &
+    cause_drive_jumps, cause_followed, cause_breaks_loose
   use mech9_simulation_failures, only: failure_angles_sensitivity, failure_friction_sensitivity
   use mech9_reaction_failures, only: failure_shared_force
   use mech9_block_names, only: chain_names
   implicit none
   private
-  public :: explain_sensitivity
+  public :: explain_sensitivity, find_cause_at_event
 
 contains
 
@@ -43,7 +44,7 @@ contains
       text = 'derivatives by the parameters are not computed with friction, as of friction '//to_text(failure%number)// &
              '. Leave out the friction, the parameters, or sensitivities and gradients'
     case (failure_event_sensitivity)
-      call find_cause(failure, cause)
+      call find_cause_at_event(failure, cause)
       text = 'derivatives by the parameters do not exist at t = '//to_text(failure%t, 10)//' s: '//cause// &
              '. End the run before, or leave out sensitivities and gradients'
     case (failure_angles_sensitivity)
@@ -61,28 +62,28 @@ contains
   end subroutine explain_sensitivity
 
   !> Find words for the cause for which an event has no derivatives.
-  pure subroutine find_cause(failure, text)
+  pure subroutine find_cause_at_event(failure, text)
     type(failure_type), intent(in) :: failure                     !< the failure
     character(len=:), allocatable, intent(out) :: text            !< the words
 
     select case (failure%limit)
-    case (1)
+    case (cause_grazing)
       text = 'stop '//to_text(failure%number)//' is met without a rate'
-    case (2)
+    case (cause_several_impacts)
       text = 'stop '//to_text(failure%number)//' is hit together with another one'
-    case (3)
+    case (cause_start_on_stop)
       text = 'the motion begins on stop '//to_text(failure%number)//', and parameters move it away or behind'
-    case (5)
+    case (cause_drive_jumps)
       text = 'the rate of a drive jumps while a stop or friction holds a coordinate'
-    case (6)
+    case (cause_followed)
       text = 'columns may jump that quantities follow between outputs (give quantities of positions by mean, rms or integral, '// &
              'or take ''start'', ''end'' or ''at'')'
-    case (7)
+    case (cause_breaks_loose)
       text = 'the pair of friction '//to_text(failure%number)//' begins to slip, and its coefficient at rest is above that of '// &
              'sliding (give both the same value)'
     case default
       text = 'the pair of friction '//to_text(failure%number)//' is at rest without an acceleration, or at the start with a '// &
              'rate that parameters change'
     end select
-  end subroutine find_cause
+  end subroutine find_cause_at_event
 end module mech9_sensitivity_words

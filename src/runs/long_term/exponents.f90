@@ -10,15 +10,13 @@ module mech9_exponents
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_negative_inf, ieee_quiet_nan
   use mech9_failure_units, only: tell_in_units
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, exit_usage, exit_data, exit_singular
+  use mech9_error, only: error_type, raise, exit_usage, exit_data
   use mech9_text, only: to_text
   use mech9_random, only: random_type
   use mech9_model, only: model_type
   use mech9_partition, only: free_coordinate
   use mech9_variable_model, only: variable_model_type
-  use mech9_event_failures, only: failure_event_sensitivity
-  use mech9_event_variation, only: several_impacts, no_motion_at_rest, drive_jumps, breaks_loose
-  use mech9_simulation_failures, only: failure_angles_sensitivity
+  use mech9_directed_motion, only: keep_motion_alone, explain_refusal
   use mech9_simulation, only: interruption_type
   use mech9_sensitivity, only: sensitivity_type
   use mech9_motion_sensitivity, only: motion_sensitivity_type
@@ -26,7 +24,7 @@ module mech9_exponents
   use mech9_model_motion, only: model_motion_type
   implicit none
   private
-  public :: exponents_found_type, find_exponents, count_states, set_directions, find_cause_at_event
+  public :: exponents_found_type, find_exponents, count_states, set_directions
 
   !> Times at which the running means are kept, and blocks of time for standard errors.
   integer, parameter :: kept_times = 200, blocks = 20
@@ -107,7 +105,7 @@ contains
     call motion%assemble(model, err)
     if (.not. allocated(err)) call motion%prepare(model, err)
     if (.not. allocated(err)) call follow(motion%free(), variable, count, found, err, interruption)
-    call explain_refusal(err)
+    call explain_refusal(err, 'exponents', 'exponents')
     call motion%close()
     deallocate (motion, variable, model)
   end subroutine find_exponents
@@ -149,18 +147,8 @@ contains
     end do
     if (allocated(model%request%quantities)) deallocate (model%request%quantities)
     model%request%solver%accuracy = 0.0_wp
-    associate (output => model%request%output)
-      output%conditioning = .false.
-      output%energies = .false.
-      output%reactions = .false.
-      output%drive_forces = .false.
-      output%force_arrows = .false.
-      output%poses = .false.
-      output%gradients = .false.
-      output%coordinates = [integer ::]
-      output%derivatives = 2
-      output%sensitivities = .true.
-    end associate
+    call keep_motion_alone(model%request%output)
+    model%request%output%sensitivities = .true.
   end subroutine set_directions
 
   !> The model, whatever its parameters.
@@ -450,46 +438,4 @@ contains
       found%errors(k) = sqrt(sum((means(order(k), :) - sum(means(order(k), :))/blocks)**2)/(blocks - 1)/blocks)
     end do
   end subroutine evaluate
-
-  !> Say why a motion with directions ended where its events do not allow them.
-  subroutine explain_refusal(err)
-    type(error_type), allocatable, intent(inout) :: err   !< the failure, if there is one
-    real(wp) :: t
-    integer :: number, cause
-    character(len=:), allocatable :: text
-
-    if (.not. allocated(err)) return
-    if (.not. allocated(err%failure)) return
-    t = err%failure%t
-    if (err%failure%kind == failure_event_sensitivity) then
-      number = err%failure%number
-      cause = err%failure%limit
-      call find_cause_at_event(number, cause, text)
-      call raise(err, exit_singular, 'at t = '//to_text(t, 8)//' s '//text//', where exponents do not exist; change the '// &
-                 'start a little')
-    else if (err%failure%kind == failure_angles_sensitivity) then
-      call raise(err, exit_singular, 'at t = '//to_text(t, 8)//' s a ball joint comes near gimbal lock, and exponents are not '// &
-                 'known in other angles; turn the axes of the joint by axis= and zero=')
-    end if
-  end subroutine explain_refusal
-
-  !> Find words for the cause for which an event has no derivatives.
-  pure subroutine find_cause_at_event(number, cause, text)
-    integer, intent(in) :: number                           !< of the stop or the friction
-    integer, intent(in) :: cause                            !< one of those of mech9_event_variation
-    character(len=:), allocatable, intent(out) :: text      !< the words
-
-    select case (cause)
-    case (several_impacts)
-      text = 'stop '//to_text(number)//' is hit together with another one'
-    case (no_motion_at_rest)
-      text = 'the pair of friction '//to_text(number)//' comes to rest without an acceleration'
-    case (breaks_loose)
-      text = 'the pair of friction '//to_text(number)//' begins to slip by a coefficient at rest above that of sliding'
-    case (drive_jumps)
-      text = 'the rate of a drive jumps while a stop or friction holds a coordinate'
-    case default
-      text = 'stop '//to_text(number)//' is met without a rate'
-    end select
-  end subroutine find_cause_at_event
 end module mech9_exponents

@@ -6,7 +6,7 @@ module mech9_linear_motion
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
-  use mech9_request, only: output_settings_type
+  use mech9_directed_motion, only: keep_motion_alone
   use mech9_simulation, only: interruption_type
   use mech9_free_simulation, only: free_simulation_type
   use mech9_model_motion, only: model_motion_type
@@ -63,7 +63,7 @@ contains
     if (allocated(err)) return
     allocate (model, source=given)
     allocate (motion)
-    call leave_out_results(model%request%output)
+    call keep_motion_alone(model%request%output)
     model%request%solver%accuracy = 0.0_wp
     call motion%assemble(model, err)
     if (.not. allocated(err)) call motion%prepare(model, err, pictures=.true.)
@@ -104,22 +104,6 @@ contains
       end do
     end associate
   end subroutine refuse
-
-  !> Leave out all results but the motion of all coordinates.
-  subroutine leave_out_results(output)
-    type(output_settings_type), intent(inout) :: output   !< the settings
-
-    output%conditioning = .false.
-    output%energies = .false.
-    output%reactions = .false.
-    output%drive_forces = .false.
-    output%force_arrows = .false.
-    output%poses = .false.
-    output%gradients = .false.
-    output%sensitivities = .false.
-    output%coordinates = [integer ::]
-    output%derivatives = 2
-  end subroutine leave_out_results
 
   !> Follow the motion and linearise at the times.
   subroutine follow(model, simulation, times, found, err, interruption)

@@ -5,19 +5,17 @@
 !> motion goes on for some periods, which leads to stable motions.
 module mech9_periodic
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, exit_data, exit_assembly, exit_singular, exit_interrupted
+  use mech9_error, only: error_type, raise, exit_data, exit_assembly, exit_interrupted
   use mech9_text, only: to_text
   use mech9_counted, only: counted
   use mech9_random, only: random_type
   use mech9_result_units, only: unit_of, unit_name, rate_unit_of, rate_unit_name
   use mech9_motor_states, only: start_motors, find_limits
   use mech9_model, only: model_type
-  use mech9_event_failures, only: failure_event_sensitivity
-  use mech9_simulation_failures, only: failure_angles_sensitivity
+  use mech9_directed_motion, only: explain_refusal
   use mech9_state, only: state_type, copy_state
   use mech9_simulation, only: interruption_type
   use mech9_model_motion, only: model_motion_type
-  use mech9_exponents, only: find_cause_at_event
   use mech9_law_periods, only: law_period_type, find_law_period, fit_period
   use mech9_period_map, only: period_map_type
   use mech9_periodic_motion, only: periodic_motion_type, find_multipliers, judge_stability, same_motion, unstable
@@ -73,7 +71,7 @@ contains
     if (.not. allocated(err)) call choose_period(given, found%laws, period, err)
     if (.not. allocated(err)) call map%begin(given, err, interruption)
     if (.not. allocated(err)) call search_all(given, map, period, found, err)
-    call explain_refusal(err)
+    call explain_refusal(err, 'the derivatives by which periodic motions are found', 'periodic motions')
     call map%close()
   end subroutine find_periodic
 
@@ -537,26 +535,4 @@ contains
     run%start%motor = motion%motor
     call find_limits(model%mechanism, run%start, err)
   end subroutine start_periodic
-
-  !> Say why a motion with directions ended where its events do not allow them.
-  subroutine explain_refusal(err)
-    type(error_type), allocatable, intent(inout) :: err   !< the failure, if there is one
-    real(wp) :: t
-    integer :: number, cause
-    character(len=:), allocatable :: text
-
-    if (.not. allocated(err)) return
-    if (.not. allocated(err%failure)) return
-    t = err%failure%t
-    if (err%failure%kind == failure_event_sensitivity) then
-      number = err%failure%number
-      cause = err%failure%limit
-      call find_cause_at_event(number, cause, text)
-      call raise(err, exit_singular, 'at t = '//to_text(t, 8)//' s '//text//', where '// &
-                 'the derivatives by which periodic motions are found do not exist; change the start a little')
-    else if (err%failure%kind == failure_angles_sensitivity) then
-      call raise(err, exit_singular, 'at t = '//to_text(t, 8)//' s a ball joint comes near gimbal lock, and periodic '// &
-                 'motions are not known in other angles; turn the axes of the joint by axis= and zero=')
-    end if
-  end subroutine explain_refusal
 end module mech9_periodic

@@ -14,7 +14,9 @@
 module mech9_event_variation
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, add_place, exit_singular
-  use mech9_event_failures, only: failure_event_sensitivity
+  use mech9_event_failures, only: failure_event_sensitivity, &
+    cause_grazing, cause_several_impacts, cause_start_on_stop, cause_no_motion, cause_drive_jumps, cause_followed, &
+    cause_breaks_loose
   use mech9_event_tolerances, only: grazing, least_rebound
   use mech9_cholesky, only: cholesky_factorize, cholesky_solve
   use mech9_state, only: state_type, copy_state
@@ -28,13 +30,7 @@ module mech9_event_variation
   use mech9_contact_equations, only: contact_equations_type, find_contact_equations
   implicit none
   private
-  public :: event_variation_type, impact_type, several_impacts, no_motion_at_rest, drive_jumps, breaks_loose
-
-  !> Causes that leave an event without derivatives: the end of a stop is met without a rate; two impacts at one time; a start on a stop that a
-  !> parameter moves; a pair comes to rest without an acceleration; the rate of a drive jumps; quantities follow a column that jumps;
-  !> a pair begins to slip whose coefficient at rest is above that of sliding.
-  integer, parameter :: grazes = 1, several_impacts = 2, start_on_stop = 3, no_motion_at_rest = 4, drive_jumps = 5, followed = 6, &
-    breaks_loose = 7
+  public :: event_variation_type, impact_type
 
   !> An impact, as the motion had it.
   type :: impact_type
@@ -94,7 +90,7 @@ contains
     real(wp), intent(in) :: of_held(:)                     !< (M) rates that held coordinates would have if nothing held them [rad/s, m/s]
     type(error_type), allocatable, intent(out) :: err      !< allocated if they do not exist in this position
 
-    if (any(abs(of_held) > 0.0_wp)) call refuse(system, drive_jumps, 0, err)
+    if (any(abs(of_held) > 0.0_wp)) call refuse(system, cause_drive_jumps, 0, err)
     if (.not. allocated(err)) call system%show_sensitivity(err)
     if (allocated(err)) return
     associate (q => system%sensitivity%motion%q)
@@ -132,7 +128,7 @@ contains
 
     associate (k => end%coordinate, limits => varied_limit(system%sensitivity%motion%tangents, end))
       if (.not. self%dq(k)**2 > 2.0_wp*grazing*least_rebound*abs(self%ddq(k))*end%unit(system%plan)) then
-        call refuse(system, grazes, end%stop, err)
+        call refuse(system, cause_grazing, end%stop, err)
       else
         call self%set_time((limits - self%q(:, 0, k))/self%dq(k))
       end if
@@ -152,11 +148,11 @@ contains
     associate (frictions => system%model%mechanism%frictions, k => system%model%mechanism%frictions(number)%coordinate)
       if (group > 0) then
         if (any(system%friction%modes%group == group .and. abs(frictions%static - frictions%dynamic) > 0.0_wp)) &
-          call refuse(system, breaks_loose, number, err)
+          call refuse(system, cause_breaks_loose, number, err)
       else if (.not. abs(self%ddq(k)) > 0.0_wp) then
-        call refuse(system, no_motion_at_rest, number, err)
+        call refuse(system, cause_no_motion, number, err)
       else if (follows_jumps(system, .false.)) then
-        call refuse(system, followed, 0, err)
+        call refuse(system, cause_followed, 0, err)
       else
         call self%set_time(-self%q(:, 1, k)/self%ddq(k))
       end if
@@ -175,7 +171,7 @@ contains
     err%failure%number = number
     err%failure%limit = cause
     if (number == 0) return
-    if (cause == no_motion_at_rest .or. cause == breaks_loose) then
+    if (cause == cause_no_motion .or. cause == cause_breaks_loose) then
       call add_place(err, place=system%model%mechanism%frictions(number)%place)
     else
       call add_place(err, place=system%model%mechanism%stops(number)%place)
@@ -198,11 +194,11 @@ contains
 
     associate (ends => contacts(impact%ends))
       if (follows_jumps(system, .true.)) then
-        call refuse(system, followed, 0, err)
+        call refuse(system, cause_followed, 0, err)
         return
       end if
       if (count(.not. ends%held) > 1) then
-        call refuse(system, several_impacts, ends(findloc(ends%held, .false., dim=1))%stop, err)
+        call refuse(system, cause_several_impacts, ends(findloc(ends%held, .false., dim=1))%stop, err)
         return
       end if
       do i = 1, size(ends)
@@ -345,7 +341,7 @@ contains
     factors = equations%g
     call cholesky_factorize(size(ends), factors, failed_at)
     if (failed_at > 0) then
-      call refuse(system, several_impacts, ends(failed_at)%stop, err)
+      call refuse(system, cause_several_impacts, ends(failed_at)%stop, err)
       return
     end if
     associate (values => system%sensitivity%values, q => system%sensitivity%motion%q, plan => system%plan)
@@ -440,7 +436,7 @@ contains
         do p = 1, size(moves)
           if (size(parameters(p)%targets) == 0) cycle
           if (moves(p) <= round_off_of_jumps*sensitivity%size_of(p)*ends(i)%unit(system%plan)) cycle
-          call refuse(system, start_on_stop, ends(i)%stop, err)
+          call refuse(system, cause_start_on_stop, ends(i)%stop, err)
           return
         end do
       end associate
@@ -460,7 +456,7 @@ contains
         if (friction%is_smooth .or. abs(self%dq(friction%coordinate)) > 0.0_wp) cycle
         do p = 1, size(self%time)
           if (size(parameters(p)%targets) == 0 .or. .not. abs(self%q(p, 1, friction%coordinate)) > 0.0_wp) cycle
-          call refuse(system, no_motion_at_rest, i, err)
+          call refuse(system, cause_no_motion, i, err)
           return
         end do
       end associate

@@ -1,0 +1,49 @@
+!> Motions with directions beside them, by which neighbouring motions are known: which results they leave out, and why they may end early.
+module mech9_directed_motion
+  use mech9_error, only: error_type, raise, exit_singular
+  use mech9_text, only: to_text
+  use mech9_request, only: output_settings_type
+  use mech9_event_failures, only: failure_event_sensitivity
+  use mech9_simulation_failures, only: failure_angles_sensitivity
+  use mech9_sensitivity_words, only: find_cause_at_event
+  implicit none
+  private
+  public :: keep_motion_alone, explain_refusal
+
+contains
+
+  !> Leave out all results but the motion of all coordinates.
+  pure subroutine keep_motion_alone(output)
+    type(output_settings_type), intent(inout) :: output   !< the settings
+
+    output%conditioning = .false.
+    output%energies = .false.
+    output%reactions = .false.
+    output%drive_forces = .false.
+    output%force_arrows = .false.
+    output%poses = .false.
+    output%gradients = .false.
+    output%sensitivities = .false.
+    output%coordinates = [integer ::]
+    output%derivatives = 2
+  end subroutine keep_motion_alone
+
+  !> Say why a motion with directions ended where its events do not allow them. Other failures stay as they are.
+  subroutine explain_refusal(err, missing, unknown)
+    type(error_type), allocatable, intent(inout) :: err   !< the failure, if there is one
+    character(len=*), intent(in) :: missing               !< the numbers that do not exist behind such an event
+    character(len=*), intent(in) :: unknown               !< the results that are not known in other angles of a joint
+    character(len=:), allocatable :: time, cause
+
+    if (.not. allocated(err)) return
+    if (.not. allocated(err%failure)) return
+    time = 'at t = '//to_text(err%failure%t, 8)//' s '
+    if (err%failure%kind == failure_event_sensitivity) then
+      call find_cause_at_event(err%failure, cause)
+      call raise(err, exit_singular, time//cause//', where '//missing//' do not exist; change the start a little')
+    else if (err%failure%kind == failure_angles_sensitivity) then
+      call raise(err, exit_singular, time//'a ball joint comes near gimbal lock, and '//unknown//' are not known in other '// &
+                 'angles; turn the axes of the joint by axis= and zero=')
+    end if
+  end subroutine explain_refusal
+end module mech9_directed_motion
