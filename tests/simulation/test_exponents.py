@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import driven_pendulum
+from four_bars import HEAVY_ROCKER
 from mech9_cases import read_table, run
 
 SLIDER = """&structure cq=1 /
@@ -34,17 +35,7 @@ DOUBLE = """&structure cq=1,2 /
 &initial coordinate=1, position=2.2 /
 &initial coordinate=2, position=0.4 /
 """
-FOUR_BAR = """&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
-&pair coordinate=2, links=2,3, kind='revolute', point=0.2,0,0, axis=0,0,1 /
-&pair coordinate=3, links=3,4, kind='revolute', point=0.7,0,0, axis=0,0,1, moving_point=1,0,0 /
-&pair coordinate=4, links=1,4, kind='revolute', point=0.6,0,0, axis=0,0,1 /
-&initial coordinate=2, position=0.3 /
-&initial coordinate=3, position=1 /
-&body link=2, mass=0.2, centre=0.1,0,0, inertia=0,0,0.0006666666666666667,0,0,0 /
-&body link=3, mass=0.5, centre=0.45,0,0, inertia=0,0,0.010416666666666667,0,0,0 /
-&body link=4, mass=2, centre=0.8,0,0, inertia=0,0,0.026666666666666667,0,0,0 /
-&gravity acceleration=0,-9.81,0 /
-&load kind='coordinate', coordinate=1, damping=0.05 /
+FOUR_BAR = HEAVY_ROCKER + """&load kind='coordinate', coordinate=1, damping=0.05 /
 &solver relative_tolerance=1e-10, absolute_tolerance=1e-11 /
 """
 
@@ -149,7 +140,7 @@ def test_motors(checks, mech9d, tmp_path):
     (1, SLIDER, 'transient=20', 3, 'the transient of the exponents ends after the motion'),
     (1, SLIDER + '&friction coordinate=1, dynamic=0.1, static=0.2, preload=1 /\n'
      "&load kind='coordinate', coordinate=1, force=0.25, law='harmonic', amplitude=1, angular_frequency=0.3, phase=3.14159 /\n", '', 6,
-     'begins to slip by a coefficient at rest above that of sliding')])
+     'begins to slip, and its coefficient at rest is above that of sliding')])
 def test_refusals(checks, mech9d, tmp_path, count, text, settings, code, message):
     """Refusals of what exponents do not carry, with a remedy."""
     _, _, said = go(mech9d, tmp_path, text, count, 10.0, settings, code)

@@ -66,6 +66,24 @@ def test_resonance(checks, mech9d, tmp_path):
     checks.near(rows['q1'], 0.75/(0.75**2 + (0.5*rows['c'])**2), 1e-10, 'the place over the damping')
 
 
+def test_folds_of_a_resonance(checks, mech9d, tmp_path):
+    """The response of Duffing's hard spring turns back twice over the frequency. Points of a branch are exact, so that a polynomial through
+    the neighbours of a fold has its extreme there; the derivative of the period by the frequency decides where the fold is found."""
+    text = OSCILLATOR.replace('damping=0.4', 'damping=0.2').replace('force=1, law', 'force=0.7, law') + (
+        "&load kind='coordinate', coordinate=1, force=-1, law='polynomial', coefficients=0,0,0,1, over='q1' /\n"
+        "&parameter name='w', sets='load(2).angular_frequency', low=0.4, high=2.6 /\n&branch parameter='w', of='periodic', points=3000 /\n")
+    rows, branches, _ = follow(mech9d, tmp_path, text, 'w')
+    at = np.nonzero(rows['type'] == 1)[0]
+    checks.equal(len(at), 2, 'two folds')
+    checks.true(rows['w'][at[0]] - rows['w'][at[1]] > 0.3, 'the second one is at a lower frequency', rows['w'][at])
+    for i in at:
+        beside = [i - 2, i - 1, i + 1, i + 2]
+        polynomial = np.polyfit(rows['q1'][beside] - rows['q1'][i], rows['w'][beside], 3)
+        turns = np.roots(np.polyder(polynomial))
+        # the term of fourth order at distances up to 0.05
+        checks.near(np.polyval(polynomial, turns[np.argmin(np.abs(turns))].real), rows['w'][i], 1e-6, 'the fold', scale=1)
+
+
 def test_kapitza(checks, mech9d, tmp_path):
     """The top of a pendulum with a vibrating pivot becomes stable at W = 44.39079478, where motions beside it begin."""
     rows, branches, _ = follow(mech9d, tmp_path, KAPITZA, 'W')

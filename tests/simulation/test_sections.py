@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import driven_pendulum
+from four_bars import HEAVY_ROCKER
 from mech9_cases import read_table, run
 
 G = 9.81
@@ -36,17 +37,7 @@ CRANK = """&structure cq=1 /
 &pair coordinate=4, links=1,4, kind='prismatic', point=4,0,0, axis=1,0,0 /
 &drive coordinate=1, kind='polynomial', coefficients=0.1, 3 /
 """
-FOUR_BAR = """&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
-&pair coordinate=2, links=2,3, kind='revolute', point=0.2,0,0, axis=0,0,1 /
-&pair coordinate=3, links=3,4, kind='revolute', point=0.7,0,0, axis=0,0,1, moving_point=1,0,0 /
-&pair coordinate=4, links=1,4, kind='revolute', point=0.6,0,0, axis=0,0,1 /
-&initial coordinate=2, position=0.3 /
-&initial coordinate=3, position=1 /
-&body link=2, mass=0.2, centre=0.1,0,0, inertia=0,0,0.0006666666666666667,0,0,0 /
-&body link=3, mass=0.5, centre=0.45,0,0, inertia=0,0,0.010416666666666667,0,0,0 /
-&body link=4, mass=2, centre=0.8,0,0, inertia=0,0,0.026666666666666667,0,0,0 /
-&gravity acceleration=0,-9.81,0 /
-&solver relative_tolerance=1e-11, absolute_tolerance=1e-12 /
+FOUR_BAR = HEAVY_ROCKER + """&solver relative_tolerance=1e-11, absolute_tolerance=1e-12 /
 """
 
 
