@@ -6,9 +6,10 @@ module mech9_asking
   use mech9_paragraph, only: print_paragraph
   use mech9_topics, only: topics
   use mech9_draft_joints, only: joints_text
-  use mech9_questions, only: question_type, ask_item, ask_seldom, ask_way, ask_joints, ask_geometry
+  use mech9_questions, only: question_type, ask_item, ask_seldom, ask_way, ask_joints, ask_geometry, ask_units
   use mech9_planar_links, only: gives_lengths, is_placed
   use mech9_question_words, only: default_type, default_of, prompt_of, heading_of, words_for, seldom_names
+  use mech9_unit_answer, only: prompt_of_units
   use mech9_question_help, only: gist_of, help_of, refusal_of_enter
   use mech9_conversation, only: conversation_type, going
   use mech9_taking, only: take_answer, keep_answer, move_on
@@ -46,7 +47,7 @@ contains
       call leave_out(conversation)
       return
     end select
-    if (question%kind /= ask_item .and. lower(line(:min(len(line), 8))) == 'default') line = ''
+    if (all(question%kind /= [ask_item, ask_units]) .and. lower(line(:min(len(line), 8))) == 'default') line = ''
     if (question%is_new .and. any(lower(line(:min(len(line), 8))) == no_more)) line = ''
     if (question%kind == ask_item .and. line == '') then
       call take_default(conversation, default)
@@ -146,6 +147,10 @@ contains
       case (ask_geometry)
         prompt = '  by lengths of planar links, or by points [points]: '
         if (gives_lengths(draft, outline)) prompt = '  by lengths of planar links, or by points [lengths]: '
+      case (ask_units)
+        if (.not. conversation%told(question%row)) call print_paragraph(error_unit, gist_of(question), 4)
+        conversation%told(question%row) = .true.
+        prompt = '  '//prompt_of_units(draft)//': '
       case default
         prompt = '  guesses of the dependent coordinates, to choose an assembly [no]: '
         if (outline%guesses) prompt = prompt(:index(prompt, '[', back=.true.))//'yes]: '

@@ -18,7 +18,8 @@ module mech9_taking
   use mech9_seldom, only: seldom_rows
   use mech9_topics, only: topics
   use mech9_planar_links, only: is_placed, point_in_plane, gives_lengths, plane_so_far, point_of_plane
-  use mech9_questions, only: question_type, entry_name, label_of, ask_item, ask_seldom, ask_way, ask_joints, ask_geometry
+  use mech9_questions, only: question_type, entry_name, label_of, ask_item, ask_seldom, ask_way, ask_joints, ask_geometry, ask_units
+  use mech9_unit_answer, only: give_units
   use mech9_conversation, only: conversation_type
   implicit none
   private
@@ -48,6 +49,8 @@ contains
       call take_joints(conversation, line)
     case (ask_geometry)
       call take_geometry(conversation, line)
+    case (ask_units)
+      call take_units(conversation, line)
     case default
       call take_guesses(conversation, line)
     end select
@@ -434,6 +437,23 @@ contains
     end associate
     call move_on(conversation)
   end subroutine take_geometry
+
+  !> Read the answer about the units of the data file.
+  subroutine take_units(conversation, line)
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
+    character(len=*), intent(in) :: line                     !< the answer, without blanks around it
+    character(len=:), allocatable :: problem
+
+    associate (interview => conversation%interview)
+      call give_units(line, interview%draft, problem)
+      if (problem /= '') then
+        call conversation%say(problem)
+        return
+      end if
+      call interview%refresh('units')
+    end associate
+    call move_on(conversation)
+  end subroutine take_units
 
   !> Read the answer about guesses of the dependent coordinates at the start.
   subroutine take_guesses(conversation, line)

@@ -166,8 +166,8 @@ def transcript(said, steps):
 def test_document(talks, tmp_path):
     """The conversation in docs/tutorials/conversation.md is this one."""
     path, new = os.path.join(TREE, 'docs', 'tutorials', 'conversation.md'), tmp_path / 'conversation.md'
-    done = piped(talks.mech9k, folder=tmp_path, answers=answers_of(scripts.FIG1))
-    now = transcript(done.stderr, scripts.FIG1)
+    done = piped(talks.mech9k, folder=tmp_path, answers=answers_of(scripts.PRESS))
+    now = transcript(done.stderr, scripts.PRESS)
     text = text_of(path)
     start = text.index('tests/dialogue/test_conversation.py. -->')
     head = text[:text.index('\n', start) + 1]

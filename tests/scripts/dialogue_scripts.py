@@ -55,6 +55,24 @@ PENDULUM_TO_THE_END = [
 PENDULUM = PENDULUM_TO_THE_END + END
 
 
+# a crank press in millimetres, by the lengths of its links, with names: the conversation of the tutorial
+PRESS_CRANK, PRESS_ROD, PRESS_OFFSET, PRESS_SPEED = 35, 120, 10, 60     # mm, mm, mm, rpm
+PRESS_UNITS = ('length_unit [m], angle_unit [rad]: ', 'mm deg')
+PRESS = [
+    ('title [', 'Crank press'), ('links: ', '4'), ('coordinates: ', '4'), PRESS_UNITS, ('[pairs]', ''), ('several freedoms', ''),
+    ('links of pair 1', '1 2'), ('links of pair 2', '2 3'), ('links of pair 3', '3 4'), ('links of pair 4', '1 4'), ('cq: ', '1'),
+    ('or by points [lengths]', ''), ('Pair 1', ''), ('Pair 2', ''), ('on link 2, length from pair 1, or x y (mm): ', str(PRESS_CRANK)),
+    ('Pair 3', ''), ('on link 3, length from pair 2, or x y (mm): ', str(PRESS_ROD)), ('Pair 4', 'slide'),
+    ('on link 1, length from pair 1, or x y (mm) [0, 0, 0]: ', f'0 {PRESS_OFFSET}'), ('axis: ', 'x'),
+    ('on link 4, length from pair 3, or x y (mm) [0, 0, 0]: ', ''), ('coupling 1, kind', ''), ('kind [polynomial]', ''),
+    ('coefficients (deg, deg/s, ...): ', f'0, {PRESS_SPEED} rpm'), ('guesses', ''), ('point 1, name', 'ram'), ('link: ', '4'),
+    ('position (mm) [0, 0, 0]: ', ''), ('point 2, name', ''), ('start', ''), ('end', ''), ('intervals', ''),
+    ('nly if you want', 'links'), ('table [', ''), ('links [none]: ', '3'),
+    ('Enter if all is right', 'add link'), ('link 1, number', '2'), ('name', 'crank'),
+    ('Enter if all is right', 'add link'), ('link 2, number', '3'), ('name', 'rod'),
+    ('Enter if all is right', 'pair 4 name = guide'), *END]
+
+
 def with_errors(steps):
     """The same conversation with wrong answers, questions, and steps back; each of them ends as before.
     What must be said of each is given as the prompt of the step that follows it."""

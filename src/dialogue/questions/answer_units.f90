@@ -38,7 +38,7 @@ module mech9_answer_units
 contains
 
   !> An answer with its units converted into those of the file. An answer without units, or of another form, stays as it is. A unit
-  !> behind the last number alone holds for all.
+  !> behind the last number alone holds for all of its kind.
   pure subroutine in_file_units(line, wanted, units, text, problem)
     character(len=*), intent(in) :: line                    !< the answer, without blanks around it
     character(len=*), intent(in) :: wanted(:)               !< SI unit of each number in turn, the last one of all further ones; empty: none
@@ -54,7 +54,11 @@ contains
     call split(line, numbers, given, n)
     if (n == 0) return
     if (all(given(:n) == '')) return
-    if (all(given(:n - 1) == '')) given(:n) = given(n)
+    if (all(given(:n - 1) == '')) then
+      do i = 1, n - 1
+        if (wanted(min(i, size(wanted))) == wanted(min(n, size(wanted)))) given(i) = given(n)
+      end do
+    end if
     text = ''
     do i = 1, n
       if (i > 1) text = text//', '

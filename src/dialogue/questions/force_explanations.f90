@@ -25,7 +25,7 @@ module mech9_force_explanations
     explanation_type('gravity', 'acceleration', '', &
                   'Give the acceleration of gravity by its components along the axes of the frame. The letters x, y, z '// &
                   'and -x, -y, -z mean 9.81 m/s^2 along that axis, and none means no gravity.', &
-                  '-y (the same as 0, -9.81, 0: y points up)')]
+                  '-y (9.81 m/s^2 against y, which points up)')]
 
   type(explanation_type), parameter :: load_texts(*) = [ &
     explanation_type('load', 'kind', '', &
@@ -59,8 +59,8 @@ module mech9_force_explanations
     explanation_type('load', 'frame', 'force torque', &
                   'A load that is fixed keeps its direction in space; a load of the frame link turns with the link.', 'link'), &
     explanation_type('load', 'stiffness', 'spring', &
-                  'The spring pulls with this force for each metre by which it is longer than its free length. A damper '// &
-                  'alone has stiffness 0.', '200 (2 N for each centimetre)'), &
+                  'The spring pulls with this force for each unit of length by which it is longer than its free '// &
+                  'length. A damper alone has stiffness 0.', '200 (2 N for each centimetre)'), &
     explanation_type('load', 'stiffness', 'coordinate', &
                   'The load is -stiffness (q - rest) - damping dq/dt + force. The stiffness of an angle is per rad, '// &
                   'whatever angle_unit says; a negative one drives the coordinate away from rest.', &
@@ -72,7 +72,7 @@ module mech9_force_explanations
                   'At this value of the coordinate the spring in the pair is at rest.', '0.5236 (a twelfth of a turn)', &
                   '30 (a twelfth of a turn)', '0.05'), &
     explanation_type('load', 'damping', 'spring', &
-                  'The damper pulls with this force for each metre per second at which the distance of its ends grows.', '1.5'), &
+                  'The damper pulls with this force for each unit of speed at which the distance of its ends grows.', '1.5'), &
     explanation_type('load', 'damping', 'coordinate', &
                   'The load is -stiffness (q - rest) - damping dq/dt + force. The damping of an angle is per rad/s, '// &
                   'whatever angle_unit says.', '0.1 (0.1 N m for each rad/s)', '0.1 (0.1 N m for each rad/s)', &

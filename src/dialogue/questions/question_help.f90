@@ -1,14 +1,19 @@
 !> The texts about a question beyond its prompt: one line where a name comes up first, and the answer to `?`. The answer
 !> to an empty line is here too, where the question has no default.
 module mech9_question_help
+  use mech9_kinds, only: wp
+  use mech9_text, only: to_text
+  use mech9_units, only: units_type, units_of_words
   use mech9_grammar, only: group_table, item_table, item_row_type
   use mech9_data_help, only: values_text, default_text
   use mech9_draft, only: draft_type, unquoted
   use mech9_topics, only: can_be_left_out
   use mech9_outline, only: outline_type
   use mech9_seldom, only: seldom_rows
-  use mech9_questions, only: question_type, ask_item, ask_seldom, ask_way, ask_guesses, ask_joints, ask_geometry
-  use mech9_question_words, only: coordinate_kind, angle_unit, unit_here, is_needed, seldom_names
+  use mech9_questions, only: question_type, ask_item, ask_seldom, ask_way, ask_guesses, ask_joints, ask_geometry, ask_units
+  use mech9_question_words, only: coordinate_kind, angle_unit, unit_here, is_needed, seldom_names, &
+    si_units_here, units_of_draft
+  use mech9_answer_units, only: part_length
   use mech9_explanations, only: find_explanation, explanations
   implicit none
   private
@@ -23,6 +28,11 @@ contains
     type(question_type), intent(in) :: question  !< the question
     character(len=:), allocatable :: text
 
+    if (question%kind == ask_units) then
+      text = 'units in this file and its results: lengths in m, mm or in, angles in rad or deg; if you like, also forces in '// &
+             'N, kN or lbf, masses in kg, g, t or lb, rates of angles in rad/s, deg/s or rpm. For example: mm deg'
+      return
+    end if
     associate (row => item_table(question%row))
       text = trim(row%name)//': '//trim(row%help)
       if (row%words /= '') text = text//' ('//words_allowed(values_text(row))//')'
@@ -65,6 +75,11 @@ contains
       text = 'By lengths you say how far apart the pairs of each link are, in a system that the link has for itself. Where a '// &
              'pair does not lie on the line between the first two, give x and y there. By points you give the points and '// &
              'directions of all pairs by three numbers, in one position or in systems of your own.'
+    case (ask_units)
+      text = 'Numbers without a unit, in this file and in its results, are in these units. Name those that differ from the '// &
+             'brackets, in any order, with blanks between. Torques and energies are force times length, moments of inertia '// &
+             'mass times length^2, times are in s. Later answers may name other units, as 80 mm, 3000 rpm, 0.5 kg: they are '// &
+             'converted.'//line_end//'For example: mm deg (also: mm deg kN rpm)'
     case (ask_guesses)
       text = 'The same links can be put together in several ways. Rough values of the dependent coordinates choose '// &
              'one; without them the search starts from zeros, the position in which the mechanism is described. '// &
@@ -114,7 +129,7 @@ contains
       if (question%is_new) otherwise = 'Enter where there is no more'
       if (question%is_new .and. .not. group_table(question%group_row)%repeats) otherwise = 'Enter where there is none'
       text = text//line_end//'Values: '//values_text(row)//unit//'; '//otherwise//'.'//line_end//'For example: '// &
-             example_of(row, place, coordinate_kind(question, draft), angle_unit(draft))
+             example_here(question, draft, example_of(row, place, coordinate_kind(question, draft), angle_unit(draft)))
     end associate
   end function help_on_name
 
@@ -135,6 +150,42 @@ contains
     end associate
   end function example_of
 
+  !> An example with its numbers in the units of this data file. The words behind them name their units.
+  pure function example_here(question, draft, example) result(text)
+    type(question_type), intent(in) :: question  !< the question
+    type(draft_type), intent(in) :: draft        !< groups and names with their values as text
+    character(len=*), intent(in) :: example      !< numbers in m, N, kg, rad or deg, and words about them in brackets
+    character(len=:), allocatable :: text
+    character(len=part_length), allocatable :: wanted(:)
+    type(units_type) :: of_example, units
+    real(wp) :: number
+    integer :: first, last, n, iostat
+
+    text = example
+    if (item_table(question%row)%type /= 'real') return
+    of_example = units_of_words('m', angle_unit(draft), 'N', 'kg', '')
+    units = units_of_draft(draft)
+    call si_units_here(question, draft, wanted)
+    text = ''
+    first = 1
+    n = 0
+    do while (first <= len(example))
+      last = first + scan(example(first:)//',', ',(') - 2
+      read (example(first:last), *, iostat=iostat) number
+      n = min(n + 1, size(wanted))
+      if (iostat /= 0 .or. verify(trim(adjustl(example(first:last))), '0123456789.eE+-') > 0) exit
+      number = number*(of_example%size_of(wanted(n))/units%size_of(wanted(n)))
+      if (n > 1 .or. text /= '') text = text//', '
+      text = text//to_text(number, 6)
+      first = last + 2
+      if (last + 1 > len(example)) return
+      if (example(last + 1:last + 1) == ',') cycle
+      text = text//' '//example(last + 1:)
+      return
+    end do
+    text = example
+  end function example_here
+
   !> The text for an empty answer to a question without a default.
   pure function refusal_of_enter(question) result(text)
     type(question_type), intent(in) :: question  !< the question
@@ -142,6 +193,6 @@ contains
 
     text = 'This must be given; ? explains it.'
     if (item_table(question%row)%group == 'gravity') &
-      text = 'Gravity must be given: -y (which is 0, -9.81, 0), other components, or none; ? explains it.'
+      text = 'Gravity must be given: -y (9.81 m/s^2 against y), other components, or none; ? explains it.'
   end function refusal_of_enter
 end module mech9_question_help

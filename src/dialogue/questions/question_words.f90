@@ -15,9 +15,10 @@ module mech9_question_words
   use mech9_outline, only: outline_type
   use mech9_seldom, only: seldom_rows
   use mech9_study_needs, only: is_for_study
+  use mech9_unit_answer, only: all_unit_words
   use mech9_planar_links, only: is_placed, is_settled, origin_pair, link_of_point
   use mech9_questions, only: question_type, entry_name, ask_item, ask_seldom, ask_way, &
-                             ask_guesses, ask_joints, ask_geometry
+                             ask_guesses, ask_joints, ask_geometry, ask_units
   implicit none
   private
   public :: default_type, default_of, prompt_of, heading_of, coordinate_kind, words_for
@@ -460,6 +461,8 @@ contains
       list = 'lengths points '
     case (ask_guesses)
       list = 'yes no '
+    case (ask_units)
+      list = all_unit_words()
     case (ask_joints)
       list = 'none'
       do i = 1, size(compound_kinds)

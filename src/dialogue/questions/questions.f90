@@ -13,18 +13,19 @@ module mech9_questions
   use mech9_outline, only: outline_type, wants_forces
   use mech9_seldom, only: is_seldom, is_used
   use mech9_study_needs, only: is_for_study
+  use mech9_unit_answer, only: is_unit_row
   use mech9_planar_links, only: may_be_planar, is_settled, is_placed
   implicit none
   private
   public :: question_type, make_questions, label_of, find_question, entry_name, is_open
-  public :: ask_item, ask_seldom, ask_way, ask_guesses, ask_joints, ask_geometry, check_structure, check_start, check_all
+  public :: ask_item, ask_seldom, ask_way, ask_guesses, ask_joints, ask_geometry, ask_units, check_structure, check_start, check_all
 
   !> The kinds of questions. Two are about a name of a group, and about the rarely used names of a group. Others are
-  !> about the way in which the structure is given, joints with several freedoms, lengths or points of a planar mechanism, and
-  !> guesses of dependent coordinates.
+  !> about the way in which the structure is given, joints with several freedoms, lengths or points of a planar mechanism,
+  !> guesses of dependent coordinates, and the units of the data file together.
   !> Checks between the questions are kinds of their own.
   integer, parameter :: ask_item = 1, ask_seldom = 2, ask_way = 3, ask_guesses = 4, ask_joints = 5
-  integer, parameter :: check_structure = 6, check_start = 7, check_all = 8, ask_geometry = 9
+  integer, parameter :: check_structure = 6, check_start = 7, check_all = 8, ask_geometry = 9, ask_units = 10
 
   !> One question.
   type :: question_type
@@ -35,7 +36,7 @@ module mech9_questions
     integer :: row = 0             !< row of the name in item_table
     integer :: line = 0            !< row of the coincidence matrix; 0: none
     logical :: is_new = .false.    !< the answer begins a new group, or none
-    logical :: on_request = .false.   !< the question is asked only where the user begins such a group by add
+    logical :: on_request = .false.   !< the question is asked only where the user begins such a group by add, or names it
   end type question_type
 
   !> Names that give the place of a pair instead of the Denavit-Hartenberg parameters.
@@ -172,7 +173,13 @@ contains
     do i = 1, size(order)
       question = template
       question%row = order(i)
-      if (is_open(draft, outline, question)) call append(questions, count, question)
+      if (.not. is_open(draft, outline, question)) cycle
+      if (item_table(order(i))%group == 'mechanism' .and. item_table(order(i))%name == 'angle_unit') &
+        call append(questions, count, question_type(kind=ask_units, topic=question%topic, group_row=question%group_row, &
+                                                    place=1, row=order(i)))
+      ! units are asked for together, and one by one in corrections
+      question%on_request = is_unit_row(item_table(order(i)))
+      call append(questions, count, question)
     end do
   end subroutine ask_about_one
 
@@ -396,6 +403,8 @@ contains
       label = 'geometry'
     case (ask_guesses)
       label = 'guesses'
+    case (ask_units)
+      label = 'units'
     case (check_structure)
       label = 'structure'
     case (check_start)

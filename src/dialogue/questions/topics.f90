@@ -29,7 +29,8 @@ module mech9_topics
                'for each.'), &
     topic_type('The start', 'initial', ''), &
     topic_type('Bodies', 'body', 'Links without a body are massless. A body begun by mistake is left out by remove.'), &
-    topic_type('Gravity', 'gravity', 'It acts on all bodies: 0, -9.81, 0 on Earth where y points up; none where it is left out.'), &
+    topic_type('Gravity', 'gravity', 'It acts on all bodies: -y is 9.81 m/s^2 against y, as on Earth where y points up; '// &
+               'none where it is left out.'), &
     topic_type('Loads', 'load', 'Forces, torques, springs and dampers, on links and on coordinates. '// &
                'A load begun by mistake is left out by remove.'), &
     topic_type('Motors', 'motor', 'A motor moves a coordinate without a drive: by direct current, or by a controller. '// &

@@ -1,0 +1,110 @@
+"""The units of a new data file, asked for before the first length: their words, and a motion in them against its closed form."""
+import os
+
+import numpy as np
+import pytest
+
+import data_file
+import dialogue_scripts as scripts
+from conversations import answers_of, first_missing, in_one_line, piped
+from mech9_cases import read_table, text_of
+
+UNITS = scripts.PRESS_UNITS[0]
+BEFORE = scripts.PRESS[:3]
+STRUCTURE = ('[pairs]', '')
+
+
+@pytest.fixture
+def folder(tmp_path):
+    return os.fspath(tmp_path)
+
+
+def draft_after(checks, program, folder, answers, said=()):
+    """The group mechanism of the draft after some answers about units, the last of which is taken."""
+    steps = BEFORE + [('angle_unit [', answer) for answer in answers] + [STRUCTURE]
+    done = piped(program, folder=folder, answers=answers_of(steps))
+    checks.true(first_missing(done.stderr, steps) is None, f'{answers}: all prompts come', done.stderr)
+    for words in said:
+        checks.true(words in in_one_line(done.stderr), f'{answers}: {words}', done.stderr)
+    groups = data_file.parse(text_of(os.path.join(folder, 'crank_press.draft.nml')))
+    return {name: value[0] for name, value in groups[0][1].items() if name.endswith('_unit')}, done.stderr
+
+
+@pytest.mark.parametrize('answer, units', [
+    ('', {}), ('deg', {'angle_unit': 'deg'}), ('d', {'angle_unit': 'deg'}), ('RAD', {'angle_unit': 'rad'}), ('mm', {'length_unit': 'mm'}),
+    ('m', {'length_unit': 'm'}), ('inches, degrees', {'length_unit': 'in', 'angle_unit': 'deg'}), ('deg mm', {'length_unit': 'mm', 'angle_unit': 'deg'}),
+    ('mm deg kN t rpm', {'length_unit': 'mm', 'angle_unit': 'deg', 'force_unit': 'kN', 'mass_unit': 't', 'rate_unit': 'rpm'}),
+    ('in lbf lb deg/s', {'length_unit': 'in', 'force_unit': 'lbf', 'mass_unit': 'lb', 'rate_unit': 'deg/s'}), ('g n', {'mass_unit': 'g', 'force_unit': 'N'})])
+def test_words_of_units(checks, mech9k, folder, answer, units):
+    """Each unit is told by its word alone; what an answer does not name keeps its default, as Enter and `deg` always did."""
+    checks.equal(draft_after(checks, mech9k, folder, [answer])[0], units, answer)
+
+
+@pytest.mark.parametrize('answer, said', [
+    ('cm', "'cm' is none of the units"), ('mm in', 'two units of one kind'), ('mm deg rad', 'two units of one kind'), ('80 mm', "'80' is none"),
+    ('no', "'no' is none"), ('?', 'Later answers may name other units'), ('m' * 300, 'is none of the units')])
+def test_wrong_words(checks, mech9k, folder, answer, said):
+    """They are refused, change nothing, and the question comes again."""
+    units, _ = draft_after(checks, mech9k, folder, [answer, 'mm'], [said])
+    checks.equal(units, {'length_unit': 'mm'}, answer)
+
+
+def test_steps_back(checks, mech9k, folder):
+    """`back` shows the units that were named, which an answer changes and `default` takes away."""
+    steps = BEFORE + [(UNITS, 'mm rpm'), ('[pairs]', 'back'), ('length_unit [mm], angle_unit [rad], rate_unit [rpm]: ', 'in'),
+                      ('[pairs]', 'back'), ('length_unit [in], angle_unit [rad], rate_unit [rpm]: ', 'default'), ('[pairs]', 'back'),
+                      (UNITS, 'back'), ('coordinates [4]', ''), (UNITS, 'mm'), STRUCTURE]
+    done = piped(mech9k, folder=folder, answers=answers_of(steps))
+    checks.true(first_missing(done.stderr, steps) is None, 'all prompts come', done.stderr)
+    checks.equal(in_one_line(done.stderr).count('lengths in m, mm or in'), 1, 'the units are told once')
+
+
+def slider(crank):
+    """Place of the ram and angle of the rod, from the closed triangle of crank, rod and guide."""
+    y = scripts.PRESS_OFFSET - scripts.PRESS_CRANK*np.sin(crank)
+    along = np.sqrt(scripts.PRESS_ROD**2 - y**2)
+    return scripts.PRESS_CRANK*np.cos(crank) + along, np.degrees(np.arctan2(y, along))
+
+
+def test_press_in_millimetres(checks, mech9k, folder):
+    """The press of the tutorial: its ram and the angle of its rod against the triangle; one turn a second, as 60 rpm says."""
+    done = piped(mech9k, folder=folder, answers=answers_of(scripts.PRESS))
+    checks.true(first_missing(done.stderr, scripts.PRESS) is None, 'all prompts come', done.stderr)
+    found = read_table(text_of(os.path.join(folder, 'crank_press.dat')))
+    place, angle = slider(2*np.pi*found['t'])
+    checks.near(found['ram.x'], place, 1e-11, 'ram [mm]')
+    checks.near(found['ram.y'], np.full(len(place), scripts.PRESS_OFFSET), 1e-12, 'guide [mm]')
+    checks.near(found['L3.phi'], angle, 1e-11, 'angle of the rod [deg]')
+    text = text_of(os.path.join(folder, 'crank_press.nml'))
+    for part in ("number=2, name='crank'", "number=3, name='rod'", "name='guide'", "length_unit='mm'"):
+        checks.true(part in text, f'the data file has {part}', text)
+
+
+def test_later_change(checks, mech9k, folder):
+    """A unit is changed at the end, as any other answer is."""
+    steps = scripts.PRESS[:-4] + [('Enter if all is right', 'mechanism length_unit = in'), ('Enter if all is right', 'mechanism angle_unit'),
+                                  ('angle_unit [deg]: ', 'rad'), *scripts.END[:1], ('[both]', 'save'), ('data file [', '')]
+    done = piped(mech9k, folder=folder, answers=answers_of(steps))
+    checks.true(first_missing(done.stderr, steps) is None, 'all prompts come', done.stderr)
+    text = text_of(os.path.join(folder, 'crank_press.nml'))
+    checks.true("length_unit='in'" in text and "angle_unit='rad'" in text, 'both are changed', text)
+
+
+@pytest.mark.parametrize('units, length, doubted', [('', '120', True), ('m', '120', False), ('mm', '120', False), ('in', '120', False)])
+def test_lengths_without_a_named_unit(checks, mech9k, folder, units, length, doubted):
+    """120 is asked about where Enter left the metre; not where a unit was named, be it the metre itself."""
+    steps = scripts.PRESS[:3] + [(UNITS, units)] + scripts.PRESS[4:14] + [('on link 2, length', length)]
+    done = piped(mech9k, folder=folder, answers=answers_of(steps))
+    checks.equal('this one is 120 m' in in_one_line(done.stderr), doubted, units)
+
+
+@pytest.mark.parametrize('units, example', [
+    ('', '0.1, 0.05 (begins at 0.1 m and slides 0.05 m each second)'), ('mm', '100, 50 (begins at 0.1 m and slides 0.05 m each second)'),
+    ('in deg', '3.93701, 1.9685 (begins at 0.1 m')])
+def test_examples_in_these_units(checks, mech9k, folder, units, example):
+    """The example that ? gives is right as an answer: 0.1 m is 100 mm and 100/25.4 in."""
+    steps = BEFORE[:1] + [('links: ', '2'), ('coordinates: ', '1'), (UNITS, units), ('[pairs]', ''), ('links of pair 1', '1 2'), ('cq: ', '1'),
+                          ('which of them', ''), ('kind', 'slide'), ('point', ''), ('axis', 'x'), ('kind [polynomial]', ''), ('coefficients', '?')]
+    done = piped(mech9k, folder=folder, answers=answers_of(steps))
+    checks.true(first_missing(done.stderr, steps) is None, 'all prompts come', done.stderr)
+    checks.true(example in in_one_line(done.stderr), example, done.stderr)
