@@ -13,7 +13,6 @@ string(TOUPPER "${CMAKE_BUILD_TYPE}" kind)
 string(STRIP "${CMAKE_Fortran_FLAGS} ${CMAKE_Fortran_FLAGS_${kind}}" link_compile_flags)
 string(STRIP "${CMAKE_EXE_LINKER_FLAGS} ${CMAKE_EXE_LINKER_FLAGS_${kind}}" link_linker_flags)
 string(REPLACE ";" " " link_fortran77_options "${MECH9_FORTRAN77_OPTIONS}")
-string(REPLACE ";" " " link_lto "${MECH9_LTO_LINK}")
 string(REPLACE ";" " " link_libraries "${MECH9_LINK_LIBRARIES}")
 
 set(link_letters "")
@@ -48,12 +47,6 @@ foreach(program mech9k mech9d)
   endif()
 endforeach()
 install(FILES "${MECH9_PROGRAMS_DIR}/memory_guard.f90" DESTINATION "${MECH9_INSTALL_PROGRAMS}" COMPONENT development)
-# The library carries code for optimisation across files, which the linker would take at the cost of minutes. Programs of other projects
-# are linked with the other code, unless they ask: by LTO in mech9_add_programs, or by their property INTERPROCEDURAL_OPTIMIZATION.
-if(MECH9_LTO_NO_LINK)
-  set(asked "$<OR:$<BOOL:$<TARGET_PROPERTY:MECH9_LTO>>,$<BOOL:$<TARGET_PROPERTY:INTERPROCEDURAL_OPTIMIZATION>>>")
-  target_link_options(mech9 INTERFACE "$<INSTALL_INTERFACE:$<$<NOT:${asked}>:${MECH9_LTO_NO_LINK}>>")
-endif()
 install(TARGETS mech9 EXPORT mech9Targets DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT development)
 # .smod: users' submodules need those of their hooks
 install(DIRECTORY "${MECH9_MODULES_DIR}/" DESTINATION "${modules_dir}" COMPONENT development

@@ -3,7 +3,7 @@
 option(MECH9_BUILD_TESTS "build the tests" ${PROJECT_IS_TOP_LEVEL})
 option(MECH9_BUILD_BENCH "build the benchmarks of bench/run" OFF)
 option(MECH9_NATIVE "use every instruction of this machine (-march=native)" OFF)
-option(MECH9_LTO "release: optimise across the files of the computing floors when linking (a fifth faster)" ON)
+option(MECH9_LTO "release: optimise across the files of the computing floors (a fifth faster)" ON)
 option(MECH9_SYMBOLS "release: keep the names of procedures in mech9k and mech9d, for profilers" OFF)
 option(MECH9_LINE_EDITING "edit lines at the terminal by libedit, where it is found" ON)
 option(MECH9_THREADS "make the runs of a study in threads by OpenMP, where it is found" ON)
@@ -61,7 +61,8 @@ if(CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
   if(CMAKE_BUILD_TYPE STREQUAL "Release")
     set(MECH9_FAST_COMPILE -O3)
     set(MECH9_SMALL_COMPILE -Os)
-    add_compile_options(-ffunction-sections -fdata-sections)
+    set(MECH9_SECTIONS -ffunction-sections -fdata-sections)
+    add_compile_options(${MECH9_SECTIONS})
     add_link_options(-Wl,--gc-sections)
     # nothing but debuggers unwinds the stack of Fortran procedures
     set(MECH9_NO_UNWINDING -fno-asynchronous-unwind-tables -fno-unwind-tables)
@@ -69,13 +70,10 @@ if(CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
     if(NOT MECH9_SYMBOLS)
       set(MECH9_STRIP -s)
     endif()
-    # Optimisation across files, for the computing floors alone: they carry both kinds of code (fat objects). mech9k and mech9d are
-    # linked with the one, in some seconds; unit tests and users' programs with the other, at once.
+    # Optimisation across files, for the computing floors alone: the archive has them as one object (cmake/archive.in). Their
+    # procedures may be put into others although another library could replace them in libmech9.so, which none does.
     if(MECH9_LTO)
-      set(MECH9_LTO_COMPILE -flto -ffat-lto-objects)
-      # in one piece: as fast as several in parallel, for which the compiler would want make
-      set(MECH9_LTO_LINK -O3 -flto -flto-partition=one ${MECH9_NO_UNWINDING})
-      set(MECH9_LTO_NO_LINK -fno-lto)
+      set(MECH9_LTO_COMPILE -flto -fno-fat-lto-objects -fno-semantic-interposition)
     endif()
   endif()
 endif()

@@ -1,14 +1,13 @@
-# mech9_add_programs(NAME rig PROCEDURES my_pair.f90 old_cam.f ... [LIBRARIES ...] [LTO])
+# mech9_add_programs(NAME rig PROCEDURES my_pair.f90 old_cam.f ... [LIBRARIES ...])
 #
 # The programs with the user's own procedures in them: rig_k (kinematics), and rig_d (dynamics)
 # where the project has it. PROCEDURES holds submodules of the hooks (mech9_user_pair, ...) and
 # whatever they need: free-form or fixed-form sources and object files. They stand before the library
 # on the linker's line, so that they replace its answers "no user procedure is linked".
-# LTO optimises across files: a fifth faster, but seconds to link.
 #
 # Needs the target mech9::mech9, and MECH9_PROGRAMS_DIR, the folder of the main programs.
 function(mech9_add_programs)
-  cmake_parse_arguments(PARSE_ARGV 0 arg "LTO" "NAME" "PROCEDURES;LIBRARIES")
+  cmake_parse_arguments(PARSE_ARGV 0 arg "" "NAME" "PROCEDURES;LIBRARIES")
   if(NOT arg_NAME OR NOT arg_PROCEDURES OR arg_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "use: mech9_add_programs(NAME rig PROCEDURES my_pair.f90 ... [LIBRARIES ...])")
   endif()
@@ -26,12 +25,6 @@ function(mech9_add_programs)
       add_executable(${program} "${main}" ${arg_PROCEDURES})
       mech9_guard_memory(${program})
       target_link_libraries(${program} PRIVATE mech9::mech9 ${arg_LIBRARIES})
-      if(arg_LTO)
-        set_target_properties(${program} PROPERTIES MECH9_LTO ON)
-        target_link_options(${program} PRIVATE ${MECH9_LTO_LINK})
-      else()
-        target_link_options(${program} PRIVATE ${MECH9_LTO_NO_LINK})
-      endif()
       # two programs with submodules of one name would otherwise write the same module file
       set_target_properties(${program} PROPERTIES
         Fortran_MODULE_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/${program}_modules")

@@ -4,8 +4,8 @@
 
 # The lists: what a build needs, what draws the pictures, what the tests need besides, the browser that shows them pages, without which
 # those are not tested, what makes Debian packages, and what judges and tries them. libc6-dev is only a recommendation of gcc, so that
-# a minimal system can have a compiler that cannot link.
-packages_build="gfortran libc6-dev cmake ninja-build liblapack-dev libsundials-dev libsundials-fortran-dev libedit-dev libhdf5-dev libexpat1-dev libnlopt-dev"
+# a minimal system can have a compiler that cannot link; with make, parts of the library are optimised together side by side.
+packages_build="gfortran libc6-dev make cmake ninja-build liblapack-dev libsundials-dev libsundials-fortran-dev libedit-dev libhdf5-dev libexpat1-dev libnlopt-dev"
 packages_pictures="gnuplot-nox graphviz"
 packages_tests="python3 python3-pytest python3-numpy python3-h5py python3-xarray python3-h5netcdf python3-pandas hdf5-tools groff-base libopenmpi-dev openmpi-bin"
 packages_browser="chromium"

@@ -10,7 +10,7 @@ from mech9_cases import TREE, run, text_of
 USER_PROCS = os.path.join(TREE, 'user_procs')
 # the programs that are made of the samples: further options, sources in user_procs, and the procedures that mech9-link finds in them
 SAMPLES = {'trammel': ([], ['trammel/trammel.f90'], 'user_pair'),
-           'trammel_values': (['--lto'], ['trammel/trammel_values.f90'], 'user_pair_values'),
+           'trammel_values': ([], ['trammel/trammel_values.f90'], 'user_pair_values'),
            'cam_follower': ([], ['cam_follower/cam_follower.f90', 'cam_follower/oldcam.f'], 'user_pair_values'),
            'cycloidal_drive': (['-O2'], ['cycloidal_drive/cycloidal_drive.f90'], 'user_drive'),
            'cycloidal_drive_values': ([], ['cycloidal_drive/cycloidal_drive_values.f90'], 'user_drive_values'),
