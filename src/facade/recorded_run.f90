@@ -35,7 +35,7 @@ module mech9_recorded_run
     private
     type(model_type), pointer :: model => null()                 !< owned; the run refers to it
     type(varied_document_type), pointer :: variable => null()    !< owned; the run refers to it
-    type(run_type), pointer :: run => null()                     !< owned; null where none is begun
+    class(run_type), pointer :: run => null()                    !< owned; null where none is begun
     class(interruption_type), pointer :: interruption => null()  !< owned; null where the run cannot be stopped
     type(diagnostics_type) :: diagnostics                        !< gets the failure of the run
     type(run_outcome_type) :: outcome                            !< rows that were taken, and the time for them
