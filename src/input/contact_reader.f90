@@ -225,7 +225,9 @@ contains
     if (ok) call find_side(group, points, profile, ok, diagnostics)
     if (.not. ok) return
     if (profile%closed) points(:, n) = points(:, 1)
-    ends = [1, pack([(i, i=1, n)], corners), n]
+    ! the first point of an open curve is its end in any case
+    corners(1) = corners(1) .and. profile%closed
+    ends = [1, pack([(i, i=2, n)], corners(2:n)), n]
     allocate (profile%pieces(size(ends) - 1))
     do i = 1, size(profile%pieces)
       associate (piece => profile%pieces(i), first => ends(i), last => ends(i + 1))
@@ -234,7 +236,7 @@ contains
                                'or 4 and more for a smooth curve')
           return
         end if
-        call build_curve(points_of_piece(points(:, first:last)), profile%closed .and. size(ends) == 2, piece, err)
+        call build_curve(points_of_piece(points(:, first:last)), profile%closed .and. .not. any(corners), piece, err)
         if (allocated(err)) then
           call explain(err)
           call diagnostics%add(spans(first), err%message, err%code)
@@ -243,7 +245,7 @@ contains
         call check_curvature(piece, profile%side, radius, spans(first:last), diagnostics)
       end associate
     end do
-    if (.not. radius > 0.0_wp .and. size(ends) > 2) &
+    if (.not. radius > 0.0_wp .and. any(corners)) &
       call diagnostics%add(group%span, 'a path with corners needs a ball, whose centre moves smoothly about them; give '// &
                            'radius=, however small')
   end subroutine read_profile

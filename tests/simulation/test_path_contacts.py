@@ -142,6 +142,21 @@ def test_teeth(checks, mech9d, tmp_path):
     checks.true('are 0.8071 m within each other at the start' in said, 'a start in the middle is told', said)
 
 
+@pytest.mark.parametrize('closed', [False, True])
+def test_corner_at_the_first_point(checks, mech9d, tmp_path, closed):
+    """An empty line may follow the first point of a curve: an end of an open one, a corner of a closed one. A ball that slides down the
+    roof of a drop of straight sides with the slope 1 gets g/sqrt(2)."""
+    drop = [(0, 1), None, (-1, 0), None, (0, -1), None, (1, 0), None, (0, 1)]
+    write_path(tmp_path, drop if closed else [(0, 1), None, (-1, 0), None, (-1.5, -0.5)])
+    r, along = 0.1, 0.2
+    x, y = -along - r/sqrt(2), 1 - along + r/sqrt(2)
+    found, _, _ = go(mech9d, tmp_path, particle(x, y) + f"&contact point='P', kind='path', file='path.dat', radius={r}" +
+                     (" /\n" if closed else ", side='right' /\n"), 0.3)
+    way = G/sqrt(2)*found['t']**2/2
+    checks.near(found['q1'], x - way/sqrt(2), 1e-9, 'down the slope')
+    checks.near(found['K1.fn'], G/sqrt(2), 1e-9, 'a part of the weight presses')
+
+
 def test_straight_path_is_a_plane(checks, mech9d, tmp_path):
     """Impacts and sliding with friction on an incline, which is a path of two points in a frame of its own, or a plane."""
     write_path(tmp_path, [(-9, 0), (9, 0)])
