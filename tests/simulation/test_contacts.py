@@ -100,6 +100,22 @@ def test_a_ball_rolls_on_a_turntable_in_a_circle(checks, mech9d, tmp_path):
     checks.near([motion['C.x'][-1], motion['C.y'][-1]], [x, 0], 1e-9, 'round once')
 
 
+@pytest.mark.parametrize('speed', [0.3, 70.856707984268])
+def test_a_foot_stands_while_its_body_moves(checks, mech9d, tmp_path, speed):
+    """A foot on a body that a drive moves comes to rest on the ground: the velocities of both cancel each other. It slides for the time
+    u/(mu g), and the round-off of the velocity of the body is not a slip."""
+    slip, mu = 0.1, 0.8
+    text = ("&structure cq=1,2,3 /\n&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /\n"
+            "&pair coordinate=2, links=2,3, kind='prismatic', axis=1,0,0 /\n&pair coordinate=3, links=3,4, kind='prismatic', axis=0,0,1 /\n"
+            f"&body link=4, mass=1.1 /\n&point name='P', link=4 /\n&drive coordinate=1, kind='polynomial', coefficients=0, {speed!r} /\n")
+    motion, events, _ = go(mech9d, tmp_path, text + WEIGHT + TIGHT + f"&initial coordinate=2, position=0, velocity={slip - speed!r} /\n"
+                           f"&initial coordinate=3, position=0 /\n&contact point='P', friction={mu} /\n", 1)
+    checks.equal(kinds(events), [('close', 1), ('stick', 1)], 'events')
+    # tolerance: that of the integration, of a velocity of 71 m/s
+    checks.near(events[1]['time'], slip/(mu*G), 1e-8, 'it stands from this time on', scale=1)
+    checks.near(motion['P.x'][-1], slip**2/(2*mu*G), 1e-8, 'and stays there', scale=1)
+
+
 @pytest.mark.parametrize('friction', [0, 0.5, 2, 1000])
 def test_a_ball_leaves_a_sphere(checks, mech9d, tmp_path, friction):
     """Without friction it leaves where the cosine is 2/3 of that at the start. A ball that rolls slips where its weight presses too little:

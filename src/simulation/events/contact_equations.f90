@@ -98,7 +98,7 @@ contains
         associate (place => of_links%places(k), contact => system%model%mechanism%contacts(contacts(i)%contact))
           equations%rates(i) = place%gap_rate()
           equations%slip(:, i) = matmul(place%slip, equations%axes(:, 2:3, i))
-          speed = place%speed
+          speed = of_links%speeds(k)
           equations%still(i) = at_rest*speed + epsilon(speed)*plan%length/duration
           equations%round_off(i) = round_off_of_rates*speed + epsilon(speed)*plan%length/duration
           ! the rate that integration leaves at a closed gap is no impact

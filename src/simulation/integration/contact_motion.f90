@@ -36,6 +36,7 @@ module mech9_contact_motion
     real(wp), allocatable :: axes(:, :, :)         !< (3,3,contacts) normal and two tangents of each, fixed axes
     real(wp), allocatable :: rows(:, :, :)         !< (moving,3,contacts) slip along these axes per rate
     real(wp), allocatable :: answers(:, :, :)      !< (moving,3,contacts) accelerations by unit forces along them
+    real(wp), allocatable :: speeds(:)             !< (contacts) sum of the speeds from which the slip comes [m/s]
   end type contact_rows_type
 
   !> How contacts act in a motion.
@@ -153,7 +154,8 @@ contains
       err%failure%coordinates = [plan%independent(equations%moving(failed_at))]
       return
     end if
-    allocate (equations%places(size(numbers)), equations%axes(3, 3, size(numbers)), equations%rows(n, 3, size(numbers)))
+    allocate (equations%places(size(numbers)), equations%axes(3, 3, size(numbers)), equations%rows(n, 3, size(numbers)), &
+              equations%speeds(size(numbers)))
     do i = 1, size(numbers)
       associate (place => equations%places(i), axes => equations%axes(:, :, i))
         call place_of_contact(mechanism%contacts(numbers(i)), plan, state, place, ball, surface)
@@ -163,6 +165,8 @@ contains
         call add_link(mechanism%contacts(numbers(i))%links(1), 1.0_wp)
         call add_link(mechanism%contacts(numbers(i))%links(2), -1.0_wp)
         equations%rows(:, :, i) = all_rows(equations%moving, :)
+        ! a foot at rest has no speed, while those of the body and of its leg on the body cancel each other
+        equations%speeds(i) = place%speed + sum(norm2(all_rows, dim=2)*abs(state%dq(plan%independent)))
       end associate
     end do
     equations%answers = equations%rows
