@@ -1,7 +1,7 @@
 !> The forces that act on links one by one, for pictures: those of loads, with the points at which they act, and weights.
 !>
 !> Forces on coordinates, of springs there, motors and drives, are part of the wrenches of their pairs (mech9_reactions). Those of
-!> stops, contacts and friction are left out.
+!> stops, contacts and friction are found by mech9_touching_forces.
 module mech9_applied_forces
   use mech9_kinds, only: wp
   use mech9_error, only: error_type

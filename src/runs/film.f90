@@ -11,6 +11,7 @@ module mech9_film
   use mech9_motion_event, only: motion_events_type
   use mech9_columns, only: columns_type
   use mech9_applied_forces, only: applied_force_type
+  use mech9_touching_forces, only: touching_force_type
   use mech9_frame_motion, only: point_motion, link_motion
   implicit none
   private
@@ -42,6 +43,9 @@ module mech9_film
     real(wp), allocatable :: moments(:, :, :)    !< (3,pairs,frames) their moments about the same points [N m]
     type(applied_force_type), allocatable :: applied(:)   !< loads and weights; not allocated where no forces are drawn
     real(wp), allocatable :: applied_vectors(:, :, :)     !< (3,applied,frames) their forces and torques [N, N m]
+    type(touching_force_type), allocatable :: touching(:)   !< of stops, frictions and contacts, allocated as those are
+    real(wp), allocatable :: touching_vectors(:, :, :)    !< (3,touching,frames) their forces and torques [N, N m]
+    real(wp), allocatable :: touching_feet(:, :, :)       !< (3,touching,frames) where those of contacts begin [m]
     real(wp), allocatable :: velocities(:, :, :)      !< (3,points,frames) of the points; not allocated where none are drawn [m/s]
     real(wp), allocatable :: accelerations(:, :, :)   !< (3,points,frames) the same [m/s^2]
     logical, allocatable :: hit(:, :, :)         !< (2,stops,frames) the end of the stop was hit since the frame before
@@ -109,14 +113,18 @@ contains
     if (accelerations) allocate (self%accelerations(3, size(self%paths, 2), size(self%times)), source=0.0_wp)
   end subroutine keep_point_motion
 
-  !> Let a new film keep the forces of pairs, loads and gravity.
-  pure subroutine keep_forces(self, force_pairs, applied)
+  !> Let a new film keep the forces of pairs, loads and gravity, of stops, frictions and contacts.
+  pure subroutine keep_forces(self, force_pairs, applied, touching)
     class(film_type), intent(inout) :: self              !< a film without frames so far
     integer, intent(in) :: force_pairs(:)                !< pairs whose forces are drawn, by their coordinates
     type(applied_force_type), intent(in) :: applied(:)   !< loads and weights
+    type(touching_force_type), intent(in) :: touching(:) !< of stops, frictions and contacts
 
     self%force_pairs = force_pairs
     self%applied = applied
+    self%touching = touching
+    allocate (self%touching_vectors(3, size(touching), size(self%times)), source=0.0_wp)
+    allocate (self%touching_feet(3, size(touching), size(self%times)), source=0.0_wp)
     allocate (self%forces(3, size(force_pairs), size(self%times)), source=0.0_wp)
     allocate (self%moments(3, size(force_pairs), size(self%times)), source=0.0_wp)
     allocate (self%applied_vectors(3, size(applied), size(self%times)), source=0.0_wp)
@@ -172,15 +180,19 @@ contains
   end subroutine take
 
   !> Keep the forces of the latest frame.
-  pure subroutine take_forces(self, force, moment, applied)
+  pure subroutine take_forces(self, force, moment, applied, touching, feet)
     class(film_type), intent(inout) :: self   !< the film, which keeps forces
     real(wp), intent(in) :: force(:, :)       !< (3,M) in the pairs [N]
     real(wp), intent(in) :: moment(:, :)      !< (3,M) in the pairs [N m]
     real(wp), intent(in) :: applied(:, :)     !< (3,applied) of loads and gravity [N, N m]
+    real(wp), intent(in) :: touching(:, :)    !< (3,touching) of stops, frictions and contacts [N, N m]
+    real(wp), intent(in) :: feet(:, :)        !< (3,touching) where those of contacts begin [m]
 
     self%forces(:, :, self%n_frames) = force(:, self%force_pairs)
     self%moments(:, :, self%n_frames) = moment(:, self%force_pairs)
     self%applied_vectors(:, :, self%n_frames) = applied
+    self%touching_vectors(:, :, self%n_frames) = touching
+    self%touching_feet(:, :, self%n_frames) = feet
   end subroutine take_forces
 
   !> The paths of the points are continued to the present output.

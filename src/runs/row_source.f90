@@ -16,6 +16,7 @@ module mech9_row_source
   use mech9_contact_columns, only: append_contacts, fill_contacts
   use mech9_result_units, only: unit_of_parameter
   use mech9_applied_forces, only: applied_forces_type
+  use mech9_touching_forces, only: touching_forces_type
   use mech9_film, only: film_type
   use mech9_masks, only: numbers_of
   use mech9_force_record, only: force_record_type, reacting_pairs
@@ -38,6 +39,7 @@ module mech9_row_source
     type(varied_record_type) :: varied     !< finds those of forces and energies
     type(film_type), allocatable :: film   !< takes the position of each row, where it is allocated
     type(applied_forces_type) :: applied   !< loads and weights, where the film keeps forces
+    type(touching_forces_type) :: touching   !< of stops, frictions and contacts, likewise
     type(quantity_record_type) :: quantities   !< of the whole run
     class(section_record_type), allocatable :: section   !< takes the points of a section, where it is allocated
     type(tangent_type), allocatable, private :: tangents(:)   !< (P) of the constants, where quantities need those of joints of laws
@@ -497,12 +499,16 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(plan_type), pointer :: plan
     type(state_type), pointer :: state
-    real(wp), allocatable :: vectors(:, :)
+    real(wp), allocatable :: vectors(:, :), touching(:, :), feet(:, :)
 
     if (.not. allocated(film%forces)) return
+    allocate (touching(3, size(film%touching)), feet(3, size(film%touching)))
+    call self%simulation%present(plan, state)
+    call self%touching%find(self%simulation%model%mechanism, plan, state, touching, feet)
     call self%simulation%present_for_forces(plan, state)
     allocate (vectors(3, size(film%applied)))
     call self%applied%find(self%simulation%model%mechanism, plan, state, vectors, err)
-    if (.not. allocated(err)) call film%take_forces(self%forces%reactions%force, self%forces%reactions%moment, vectors)
+    if (.not. allocated(err)) &
+      call film%take_forces(self%forces%reactions%force, self%forces%reactions%moment, vectors, touching, feet)
   end subroutine show_forces
 end module mech9_row_source

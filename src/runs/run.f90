@@ -9,6 +9,7 @@ module mech9_run
   use mech9_film, only: film_type, new_film
   use mech9_masks, only: numbers_of
   use mech9_applied_forces, only: new_applied_forces
+  use mech9_touching_forces, only: new_touching_forces
   use mech9_row_source, only: row_source_type, new_row_source
   implicit none
   private
@@ -71,8 +72,10 @@ contains
       call film%keep_point_motion(output%velocity_arrows, output%acceleration_arrows)
       if (.not. output%force_arrows) return
       call new_applied_forces(model%mechanism, self%source%applied)
+      call new_touching_forces(model%mechanism, self%source%touching)
       call film%keep_forces(numbers_of(output%drawn_forces(size(model%mechanism%pairs)) .and. &
-                                       model%mechanism%structure%stands_alone()), self%source%applied%items)
+                                       model%mechanism%structure%stands_alone()), self%source%applied%items, &
+                            self%source%touching%items)
     end associate
   end subroutine keep_arrows
 

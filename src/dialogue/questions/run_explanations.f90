@@ -256,8 +256,8 @@ module mech9_run_explanations
     explanation_type('output', 'drive_forces', '', &
                   'The results then hold the force, or the torque, that each drive needs: what a motor must give.', 'yes'), &
     explanation_type('output', 'force_arrows', '', &
-                  'Drawing and film then show the forces and moments in the pairs, the loads and the weights as arrows; the '// &
-                  'longest arrow is the largest force.', 'yes'), &
+                  'Drawing and film then show the forces and moments in the pairs, the loads, the weights, and the forces of '// &
+                  'stops, friction and contacts as arrows; the longest arrow is the largest force.', 'yes'), &
     explanation_type('output', 'velocity_arrows', '', &
                   'Drawing and film then show the velocity of each point as an arrow; the longest arrow is the largest '// &
                   'velocity.', 'yes'), &

@@ -51,7 +51,7 @@ module mech9_output_grammar
     item_row_type('output', 'gradients', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
                   'derivatives of the quantities by each parameter, without columns of their own', '.true.', seldom=.true.), &
     item_row_type('output', 'force_arrows', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
-                  'arrows of forces and moments in pairs, loads and weights in both pictures, the longest for the largest force', &
+                  'arrows of forces and moments in pairs, loads, weights, stops, friction and contacts in both pictures', &
                   '.true.', seldom=.true.), &
     item_row_type('output', 'velocity_arrows', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
                   'arrows of the velocities of the points in both pictures, the longest for the largest velocity', '.true.', &

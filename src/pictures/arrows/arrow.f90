@@ -1,6 +1,7 @@
 !> One arrow in the pictures of a run: its meaning, its shape, and its vector in each frame.
 module mech9_arrow
   use mech9_kinds, only: wp
+  use mech9_film, only: film_type
   use mech9_scene, only: in_force
   implicit none
   private
@@ -18,10 +19,12 @@ module mech9_arrow
     character(len=:), allocatable :: text     !< meaning, such as velocity of P
     integer :: link = 1                       !< link where it begins
     real(wp) :: foot(3) = 0.0_wp              !< place in the link where it begins, or round which it runs [m]
+    real(wp), allocatable :: feet(:, :)       !< (3,frames) place in link 1 where it begins, if it moves on its link [m]
     !> (3,frames) from its foot to its tip, in the axes of link 1; N, N m, m/s or m/s^2 at first, then m
     real(wp), allocatable :: ways(:, :)
   contains
     procedure :: greatest
+    procedure :: begins_at
   end type arrow_type
 
 contains
@@ -37,13 +40,29 @@ contains
     end do
   end function greatest
 
-  !> The number of links that a film gets for an arrow: they hold its tip and its barbs, or the whole ring.
+  !> The place where it begins in a frame of a film, in the system of link 1 [m].
+  pure function begins_at(self, film, frame) result(place)
+    class(arrow_type), intent(in) :: self   !< the arrow
+    type(film_type), intent(in) :: film     !< poses at the outputs of the run
+    integer, intent(in) :: frame            !< number of the frame
+    real(wp) :: place(3)
+
+    if (allocated(self%feet)) then
+      place = self%feet(:, frame)
+    else
+      place = film%position(frame, self%link, self%foot)
+    end if
+  end function begins_at
+
+  !> The number of links that a film gets for an arrow: they hold its tip and its barbs, or the whole ring, and at last a foot that moves on
+  !> its link.
   pure elemental integer function links_of(arrow)
     type(arrow_type), intent(in) :: arrow   !< the arrow
 
     links_of = 1
     if (arrow%shape == straight) links_of = 3
     if (arrow%shape == double) links_of = 6
+    if (allocated(arrow%feet)) links_of = links_of + 1
   end function links_of
 
   !> Append an arrow to a list.

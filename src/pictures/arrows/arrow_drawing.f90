@@ -37,7 +37,7 @@ contains
     allocate (ends(3, 2*count(arrows%shape /= pole), film%n_frames))
     do frame = 1, film%n_frames
       do i = 1, size(ends, 2)/2
-        foot = film%position(frame, arrows(i)%link, arrows(i)%foot)
+        foot = arrows(i)%begins_at(film, frame)
         if (arrows(i)%shape == ring) then
           reach = radius*norm2(arrows(i)%ways(:, frame))*(view%right + view%up + view%toward)
           ends(:, 2*i - 1, frame) = foot - reach
@@ -57,17 +57,17 @@ contains
     type(projection_type), intent(in) :: projection   !< from space to the page
     type(film_type), intent(out) :: with_arrows       !< the film with more links
     real(wp), allocatable :: r(:, :, :, :), p(:, :, :)
-    integer :: i, n, first, last, frame
+    integer :: i, links, n, first, last, frame
 
-    n = size(film%p, 2)
+    links = size(film%p, 2)
     with_arrows = film
-    last = n + sum(links_of(arrows))
+    last = links + sum(links_of(arrows))
     allocate (r(3, 3, last, size(film%p, 3)), p(3, last, size(film%p, 3)))
-    r(:, :, :n, :) = film%r
-    p(:, :n, :) = film%p
+    r(:, :, :links, :) = film%r
+    p(:, :links, :) = film%p
     do frame = 1, film%n_frames
-      r(:, :, n + 1:, frame) = spread(identity, 3, last - n)
-      first = n + 1
+      r(:, :, links + 1:, frame) = spread(identity, 3, last - links)
+      first = links + 1
       do i = 1, size(arrows)
         associate (arrow => arrows(i), way => arrows(i)%ways(:, frame))
           select case (arrow%shape)
@@ -78,8 +78,12 @@ contains
             p(:, first, frame) = film%position(frame, arrow%link, arrow%foot)
             r(:, :, first, frame) = turned_ring(way, arrow%greatest(), projection%view)
           case default
-            call place_heads(film%position(frame, arrow%link, arrow%foot), way, projection, &
-                             p(:, first:first + links_of(arrow) - 1, frame))
+            n = first + links_of(arrow) - 1
+            if (allocated(arrow%feet)) then
+              p(:, n, frame) = arrow%feet(:, frame)
+              n = n - 1
+            end if
+            call place_heads(arrow%begins_at(film, frame), way, projection, p(:, first:n, frame))
           end select
           first = first + links_of(arrow)
         end associate
@@ -160,12 +164,13 @@ contains
     type(arrow_type), intent(in) :: arrow             !< the arrow
     integer, intent(in) :: first                      !< its first link
     type(scene_type), intent(inout) :: scene          !< nodes and items of the picture
-    integer :: j, foot, ends(6)
+    integer :: j, foot, ends(7)
 
-    call scene%add_node(arrow%link, arrow%foot, foot)
+    if (.not. allocated(arrow%feet)) call scene%add_node(arrow%link, arrow%foot, foot)
     do j = 1, links_of(arrow)
       call scene%add_node(first + j - 1, [0.0_wp, 0.0_wp, 0.0_wp], ends(j))
     end do
+    if (allocated(arrow%feet)) foot = ends(links_of(arrow))
     if (arrow%shape == straight) then
       call scene%add_item(segments, arrow%style, [foot, ends(1), ends(1), ends(2), ends(1), ends(3)], text=arrow%text)
     else

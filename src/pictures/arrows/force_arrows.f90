@@ -1,6 +1,6 @@
-!> The arrows of a film: of forces and moments in pairs, of loads and weights, and of velocities and accelerations of points. The
-!> longest arrow of each measure in a film is a part of the mechanism's size. Velocity poles of links are marks that move from frame
-!> to frame in the same way.
+!> The arrows of a film: of forces and moments in pairs, of loads and weights, of stops, frictions and contacts, and of velocities and
+!> accelerations of points. The longest arrow of each measure in a film is a part of the mechanism's size. Velocity poles of links are
+!> marks that move from frame to frame in the same way.
 module mech9_force_arrows
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use mech9_kinds, only: wp
@@ -10,7 +10,8 @@ module mech9_force_arrows
   use mech9_mechanism, only: mechanism_type
   use mech9_pair_axes, only: pair_axes_type, pair_axes
   use mech9_film, only: film_type
-  use mech9_scene, only: in_force, in_moment, in_load, in_weight, in_velocity, in_acceleration, as_pole
+  use mech9_touching_forces, only: from_stop, from_friction, from_contact
+  use mech9_scene, only: in_force, in_moment, in_load, in_weight, in_touching, in_velocity, in_acceleration, as_pole
   use mech9_arrow, only: arrow_type, append_arrow, remove_arrow, double, ring, pole
   implicit none
   private
@@ -49,6 +50,7 @@ contains
     if (allocated(film%forces)) then
       call append_wrenches(mechanism, film, arrows)
       call append_applied(film, arrows)
+      call append_touching(mechanism, film, arrows)
       call remove_negligible(size_drawn, arrows)
       call finish_texts(mechanism, arrows)
     end if
@@ -139,6 +141,38 @@ contains
       end associate
     end do
   end subroutine append_applied
+
+  !> Append the forces of stops, frictions and contacts.
+  subroutine append_touching(mechanism, film, arrows)
+    type(mechanism_type), intent(in) :: mechanism                !< the mechanism
+    type(film_type), intent(in) :: film                          !< with these forces
+    type(arrow_type), allocatable, intent(inout) :: arrows(:)    !< gets the arrows
+    type(arrow_type) :: arrow
+    character(len=:), allocatable :: what
+    integer :: i
+
+    do i = 1, size(film%touching)
+      associate (item => film%touching(i))
+        what = trim(merge('torque', 'force ', item%is_torque))
+        arrow%style = in_touching
+        arrow%link = item%link
+        arrow%foot = item%foot
+        arrow%ways = film%touching_vectors(:, i, :film%n_frames)
+        arrow%measure = merge(of_torque, of_force, item%is_torque)
+        select case (item%source)
+        case (from_stop)
+          arrow%text = 'stop '//to_text(item%number)//': '//what//' in pair '//to_text(mechanism%stops(item%number)%coordinate)
+        case (from_friction)
+          arrow%text = 'friction: '//what//' in pair '//to_text(mechanism%frictions(item%number)%coordinate)
+        case (from_contact)
+          arrow%text = 'contact '//to_text(mechanism%contacts(item%number)%number)//': '//what//' on link '//to_text(item%link)
+          arrow%link = 1
+          arrow%feet = film%touching_feet(:, i, :film%n_frames)
+        end select
+        call append_arrow(arrow, arrows)
+      end associate
+    end do
+  end subroutine append_touching
 
   !> Remove loads, weights and moments that are zero in all frames. Forces in pairs stay.
   subroutine remove_negligible(size_drawn, arrows)
@@ -246,6 +280,7 @@ contains
           arrow%shape = pole
           arrow%measure = 0
           arrow%text = 'velocity pole of link '//name(2:at - 1)
+          call add_names(mechanism%names, arrow%text)
           arrow%link = 1
           arrow%ways = ways
           call append_arrow(arrow, arrows)

@@ -6,7 +6,7 @@ module mech9_picture_style
   use mech9_kinds, only: wp, pi
   use mech9_xml_text, only: decimal
   use mech9_scene, only: in_cam, as_stand, as_ring, as_ball, as_dot, as_centre, as_free, as_leader, in_damper, as_coil, as_cup, &
-    in_force, in_bracket, as_stuck, in_velocity, in_rolling, as_sphere, in_target, as_pole, in_moment, in_weight
+    in_force, in_bracket, as_stuck, in_velocity, in_rolling, as_sphere, in_target, as_pole, in_moment, in_touching
   implicit none
   private
   public :: style_type, styles, dark_colours, light_colours, signal, light_signal, colour_of, ink, style_sheet, mark_svg, &
@@ -57,7 +57,7 @@ module mech9_picture_style
     style_type('velocity', '#1a7a1a', 2.2_wp), style_type('acceleration', '#7a1fa2', 2.2_wp), style_type('surface', '', 1.2_wp), &
     style_type('rolling', '', 1.1_wp), style_type('sphere'), style_type('target', '#a00000', 1.8_wp), &
     style_type('pole'), style_type('moment', '#c00000', 2.2_wp), style_type('load', '#0033cc', 2.2_wp), &
-    style_type('weight', ink, 2.2_wp)]
+    style_type('weight', ink, 2.2_wp), style_type('touching', '#b35900', 2.2_wp)]
 
   !> The width of an edge [px].
   real(wp), parameter, public :: edge = 1.2_wp
@@ -97,7 +97,7 @@ contains
       css = css//rule_of(styles(i), symbol)//nl
     end do
     css = css//rule_of(styles(in_target), symbol)//nl
-    do i = in_moment, in_weight
+    do i = in_moment, in_touching
       css = css//rule_of(styles(i), symbol)//nl
     end do
     css = css//'.mech9 .plate.sheet path{fill-opacity:.85}.mech9 .end path{fill:#f2f2f2}'//nl

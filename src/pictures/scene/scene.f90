@@ -11,7 +11,7 @@ module mech9_scene
             in_thread, in_cross, in_cam, as_stand, as_ring, as_ball, as_dot, as_centre, as_free, as_name, as_number, &
             as_coordinate, as_input, as_leader, in_damper, as_coil, as_cup, in_force, in_stop, in_pushed, &
             in_bracket, as_stuck, in_velocity, in_acceleration, in_surface, in_rolling, as_sphere, in_target, &
-            as_pole, in_moment, in_load, in_weight, in_pairs
+            as_pole, in_moment, in_load, in_weight, in_touching, in_pairs
 
   !> The shape of an item. A facing path is a flat outline that is drawn only if its front, round which it runs
   !> counterclockwise, is turned to the viewer. Segments join each node of an odd number to the next one.
@@ -24,7 +24,8 @@ module mech9_scene
                         as_name = 21, as_number = 22, as_coordinate = 23, as_input = 24, as_leader = 25, &
                         in_damper = 26, as_coil = 27, as_cup = 28, in_force = 29, in_stop = 30, in_pushed = 31, &
                         in_bracket = 32, as_stuck = 33, in_velocity = 34, in_acceleration = 35, in_surface = 36, in_rolling = 37, &
-                        as_sphere = 38, in_target = 39, as_pole = 40, in_moment = 41, in_load = 42, in_weight = 43
+                        as_sphere = 38, in_target = 39, as_pole = 40, in_moment = 41, in_load = 42, in_weight = 43, &
+                        in_touching = 44
 
   !> One thing to draw.
   type :: item_type

@@ -8,7 +8,7 @@ module mech9_svg_picture
   use mech9_projection, only: projection_type
   use mech9_scene, only: scene_type, item_type, closed_path, facing_path, mark, label, in_pairs, in_stop, in_pushed, &
                          as_stuck, in_force, in_velocity, in_acceleration, in_surface, as_sphere, &
-                         in_target, as_pole, in_moment, in_load, in_weight
+                         in_target, as_pole, in_moment, in_load, in_weight, in_touching
   use mech9_drawing, only: drawing_type, draw_frame, drawing_order, outline_of
   use mech9_picture_style, only: styles, colour_of, style_sheet, mark_svg
   use mech9_page, only: page_type
@@ -132,7 +132,7 @@ contains
   pure logical function has_tooltip(item)
     type(item_type), intent(in) :: item  !< one thing to draw
     integer, parameter :: with_tooltips(*) = [in_stop, in_pushed, as_stuck, in_force, in_velocity, in_acceleration, in_surface, &
-                                              as_sphere, in_target, as_pole, in_moment, in_load, in_weight]
+                                              as_sphere, in_target, as_pole, in_moment, in_load, in_weight, in_touching]
 
     has_tooltip = allocated(item%text) .and. any(item%style == with_tooltips)
   end function has_tooltip
