@@ -359,7 +359,9 @@ class Mechanism:
         return self._results(lib.assemblies, lambda m, stop, out: (m, count(starts, 'starts'), stop, out))
 
     def range(self) -> Results:
-        """How far each independent coordinate can go while the others are held: coordinate, lower, upper; infinite where nothing stops it."""
+        """How far each independent coordinate can go while the others are held: coordinate, lower, upper; infinite where nothing stops it.
+
+        report['ranges'] tells the name of each coordinate and what limits it."""
         return self._results(lib.range, lambda m, stop, out: (m, stop, out))
 
     def exponents(self, how_many: int = 1, **words: Any) -> Exponents:

@@ -3,7 +3,7 @@ module mech9_api_analyses
   use, intrinsic :: iso_c_binding, only: c_int, c_ptr, c_null_ptr
   use mech9, only: wp, error_type, finding_type, mechanism_type, run_type, rest_type, study_type, optimum_type, &
     exponents_found_type, find_motion_exponents, &
-    judge_mobility, list_assemblies, list_ranges, name_coordinates, find_cam, draw_sketch, &
+    judge_mobility, list_assemblies, list_ranges, name_coordinates, report_parts, find_cam, draw_sketch, &
     draw_film, exit_file, exit_data, exit_structure, exit_interrupted, kinematics, dynamics
   use mech9_api_text, only: c_text_type, read_c_text
   use mech9_api_error, only: begin_call, end_call
@@ -215,7 +215,7 @@ contains
     call new_interruption(stop, interruption)
     call find_mechanism(mechanism, resting, err)
     if (.not. allocated(err)) call rest%find_equilibria(resting, starts, err, interruption)
-    if (has_rows(err)) results = table_of(rest)
+    if (has_rows(err)) results = table_of(rest, resting)
     code = end_analysis(error, err, resting, dynamics)
   end function find_equilibria
 
@@ -240,16 +240,20 @@ contains
     results = c_null_ptr
     call find_mechanism(mechanism, vibrating, err)
     if (.not. allocated(err)) call rest%find_modes(vibrating, err)
-    if (.not. allocated(err)) results = table_of(rest)
+    if (.not. allocated(err)) results = table_of(rest, vibrating)
     code = end_analysis(error, err, vibrating, dynamics)
   end function find_modes
 
   !> Results with the rows of equilibria or modes.
-  type(c_ptr) function table_of(rest)
-    type(rest_type), intent(in) :: rest   !< with its rows
+  type(c_ptr) function table_of(rest, mechanism)
+    type(rest_type), intent(in) :: rest               !< with its rows
+    type(mechanism_type), intent(in) :: mechanism     !< the mechanism, for the names of its parts
     type(results_type), pointer :: found
+    character(len=:), allocatable :: report
 
     allocate (found)
+    call report_parts(mechanism, report)
+    call found%text%put(report)
     call put_texts(rest%names, found%names)
     call put_texts(rest%units, found%units)
     allocate (found%rows, source=rest%rows)
@@ -268,7 +272,7 @@ contains
     type(results_type), pointer :: found
     type(flag_interruption_type) :: interruption
     type(error_type), allocatable :: err, unnamed
-    character(len=:), allocatable :: names(:), units(:)
+    character(len=:), allocatable :: names(:), units(:), report
     real(wp), allocatable :: q(:, :), sizes(:)
     integer :: i
 
@@ -282,6 +286,8 @@ contains
       allocate (found)
       call put_texts(names, found%names)
       call put_texts(units, found%units)
+      call report_parts(assembled, report)
+      call found%text%put(report)
       allocate (found%rows(size(q, 1), size(q, 2)))
       do i = 1, size(q, 2)
         found%rows(:, i) = q(:, i)/sizes
@@ -304,19 +310,20 @@ contains
     type(flag_interruption_type) :: interruption
     type(error_type), allocatable :: err
     integer, allocatable :: coordinates(:)
-    character(len=:), allocatable :: names(:), units(:)
+    character(len=:), allocatable :: names(:), units(:), report
     real(wp), allocatable :: lower(:), upper(:), sizes(:)
 
     call begin_call(error)
     results = c_null_ptr
     call find_mechanism(mechanism, assembled, err)
     call new_interruption(stop, interruption)
-    if (.not. allocated(err)) call list_ranges(assembled, coordinates, lower, upper, err, interruption)
+    if (.not. allocated(err)) call list_ranges(assembled, coordinates, lower, upper, err, interruption, report)
     if (.not. allocated(err)) call name_coordinates(assembled, names, units, sizes, err)
     if (.not. allocated(err)) then
       allocate (found)
       call put_texts([character(len=10) :: 'coordinate', 'lower', 'upper'], found%names)
       call put_texts(['1', '1', '1'], found%units)
+      call found%text%put(report)
       allocate (found%rows(3, size(coordinates)))
       found%rows(1, :) = coordinates
       found%rows(2, :) = lower/sizes(coordinates)

@@ -29,7 +29,7 @@ module mech9
   use mech9_recorded_optimum, only: optimum_type => recorded_optimum_type
   use mech9_followed_positions, only: positions_type => followed_positions_type
   use mech9_drawn_mechanism, only: draw_sketch, draw_film
-  use mech9_structure_answers, only: judge_mobility, list_assemblies, list_ranges, name_coordinates
+  use mech9_structure_answers, only: judge_mobility, list_assemblies, list_ranges, name_coordinates, report_parts
   implicit none
   private
   public :: wp, kinematics, dynamics, string_type
@@ -38,7 +38,7 @@ module mech9
     exponents_found_type
   public :: motion_view_type, force_sum_type
   public :: interruption_type, simulation_statistics_type, coordinate_change_type, motion_event_type
-  public :: judge_mobility, list_assemblies, list_ranges, name_coordinates, find_linear_system, find_linear_along, &
+  public :: judge_mobility, list_assemblies, list_ranges, name_coordinates, report_parts, find_linear_system, find_linear_along, &
     find_motion_exponents, find_position_branches, find_cam, draw_sketch, draw_film
   public :: error_type, exit_usage, exit_data, exit_structure, exit_assembly, exit_singular, exit_integrator, exit_file, &
     exit_interrupted

@@ -5,6 +5,7 @@ module mech9_structure_answers
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_interrupted
   use mech9_text, only: string_type, texts_of_one_length, to_text
+  use mech9_part_names, only: name_in
   use mech9_model, only: model_type
   use mech9_result_units, only: unit_of, unit_name
   use mech9_plan, only: plan_type
@@ -13,6 +14,9 @@ module mech9_structure_answers
   use mech9_explained_assembly, only: assemble_model
   use mech9_start_path, only: start_way_type
   use mech9_structure_text, only: print_mobility_report
+  use mech9_range_text, only: limits_in_words
+  use mech9_json, only: json_type
+  use mech9_report_parts, only: add_part_names
   use mech9_check_text, only: print_given, print_start
   use mech9_printed_text, only: begin_text, end_text
   use mech9_mobility_report, only: mobility_report_type, report_mobility
@@ -21,7 +25,7 @@ module mech9_structure_answers
   use mech9_checked_mechanism, only: checked_mechanism_type
   implicit none
   private
-  public :: judge_mobility, list_assemblies, list_ranges, name_coordinates
+  public :: judge_mobility, list_assemblies, list_ranges, name_coordinates, report_parts
 
 contains
 
@@ -80,17 +84,19 @@ contains
   end subroutine list_assemblies
 
   !> Find how far each independent coordinate can go from the start while the others are held there. Fails as judge_mobility does.
-  subroutine list_ranges(mechanism, coordinates, lower, upper, err, interruption)
+  subroutine list_ranges(mechanism, coordinates, lower, upper, err, interruption, report)
     type(checked_mechanism_type), intent(in) :: mechanism      !< the mechanism
     integer, allocatable, intent(out) :: coordinates(:)        !< (independent) their numbers
     real(wp), allocatable, intent(out) :: lower(:)             !< (independent) least values [rad, m]; -infinite: there is none
     real(wp), allocatable, intent(out) :: upper(:)             !< (independent) greatest values [rad, m]; infinite: none
     type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
     class(interruption_type), intent(in), optional :: interruption   !< is asked whether the search shall stop
+    character(len=:), allocatable, intent(out), optional :: report   !< names of links and coordinates, and what limits each range, as JSON
     type(model_type) :: model
     type(plan_type) :: plan
     type(state_type) :: start
     type(motion_range_type) :: range
+    type(json_type) :: json
     integer :: i
 
     call assemble(mechanism, model, plan, start, err)
@@ -100,13 +106,24 @@ contains
     end if
     coordinates = plan%independent
     allocate (lower(size(coordinates)), upper(size(coordinates)))
+    call json%begin_object()
+    call add_part_names(json, model)
+    call json%begin_array('ranges')
     do i = 1, size(coordinates)
       call find_range(plan, start, coordinates(i), range, interruption)
       call fail_if_stopped(interruption, err)
       if (allocated(err)) return
       lower(i) = end_of(range%lower, -1.0_wp)
       upper(i) = end_of(range%upper, 1.0_wp)
+      call json%begin_object()
+      call json%add('coordinate', coordinates(i))
+      call json%add('name', trim(name_in(model%mechanism%names%coordinates, coordinates(i))))
+      call json%add('limited_by', limits_in_words(model, plan, coordinates(i), range))
+      call json%end_object()
     end do
+    call json%end_array()
+    call json%end_object()
+    if (present(report)) call json%take_text(report)
   end subroutine list_ranges
 
   !> Fail with exit_interrupted where a search was to stop.
@@ -141,6 +158,24 @@ contains
     call texts_of_one_length(texts, names)
     call texts_of_one_length(of_units, units)
   end subroutine name_coordinates
+
+  !> Compose the report of an analysis that has no other one: names of links and coordinates, as JSON. There is none where the request
+  !> of the mechanism cannot be taken.
+  subroutine report_parts(mechanism, report)
+    type(checked_mechanism_type), intent(in) :: mechanism        !< the mechanism
+    character(len=:), allocatable, intent(out) :: report         !< the report; empty: none
+    type(model_type) :: model
+    type(json_type) :: json
+    type(error_type), allocatable :: err
+
+    report = ''
+    call mechanism%take_request(dynamics, model, err)
+    if (allocated(err)) return
+    call json%begin_object()
+    call add_part_names(json, model)
+    call json%end_object()
+    call json%take_text(report)
+  end subroutine report_parts
 
   !> The value of an end; infinite where there is none.
   pure real(wp) function end_of(found, direction)

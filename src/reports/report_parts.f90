@@ -15,7 +15,7 @@ module mech9_report_parts
   use mech9_version, only: version, revision, compiler
   implicit none
   private
-  public :: begin_report, add_structure, add_uniqueness, save_short_report
+  public :: begin_report, add_structure, add_part_names, add_uniqueness, save_short_report
 
 contains
 
@@ -111,8 +111,7 @@ contains
     call add_integers(json, 'nws', vectors%nws)
     call add_integers(json, 'rdw', vectors%rdw)
     call add_integers(json, 'nrw', vectors%nrw)
-    call add_names(json, 'link_names', model%mechanism%names%links, model%mechanism%structure%shown_links())
-    call add_names(json, 'coordinate_names', model%mechanism%names%coordinates, plan%n_coordinates)
+    call add_part_names(json, model)
     call json%begin_array('blocks')
     do b = 1, size(plan%blocks)
       associate (block => plan%blocks(b))
@@ -126,6 +125,15 @@ contains
     end do
     call json%end_array()
   end subroutine add_structure
+
+  !> Add the names of links and of coordinates.
+  subroutine add_part_names(json, model)
+    type(json_type), intent(inout) :: json         !< the report, which is being composed
+    type(model_type), intent(in) :: model          !< the model
+
+    call add_names(json, 'link_names', model%mechanism%names%links, model%mechanism%structure%shown_links())
+    call add_names(json, 'coordinate_names', model%mechanism%names%coordinates, model%mechanism%structure%n_coordinates)
+  end subroutine add_part_names
 
   !> Add the names of links or coordinates in the order of their numbers, empty for those without one. There is no list where none has any.
   subroutine add_names(json, name, list, number)

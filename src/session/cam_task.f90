@@ -16,7 +16,7 @@ module mech9_cam_task
   use mech9_cam_profile, only: cam_profile_type, find_profile
   use mech9_cam_rows, only: list_cam_rows
   use mech9_table, only: table_type
-  use mech9_heading, only: new_heading
+  use mech9_heading, only: heading_type, new_heading
   use mech9_version, only: name_and_version
   use mech9_cam_picture, only: save_cam_picture
   use mech9_cam_text, only: print_cam, judge_cam, name_of_cam
@@ -61,7 +61,7 @@ contains
           if (files(i)%is_picture) then
             call save_cam_picture(files(i)%path, name_of_cam(model, k), model, cam, profile, err)
           else
-            call save_table(files(i)%path, model, k, profile, err)
+            call save_table(files(i)%path, model, k, profile, options%has('names'), err)
           end if
           if (allocated(err)) return
           if (files(i)%path /= '-' .and. .not. options%has('quiet')) &
@@ -110,21 +110,24 @@ contains
   end subroutine read_files
 
   !> Write the table of a profile, with a row for each output at which the follower moves against the cam.
-  subroutine save_table(path, model, number, profile, err)
+  subroutine save_table(path, model, number, profile, by_names, err)
     character(len=*), intent(in) :: path                !< of the table; '-' is standard output
     type(model_type), intent(in) :: model               !< the model
     integer, intent(in) :: number                       !< of the cam
     type(cam_profile_type), intent(in) :: profile       !< its profile
+    logical, intent(in) :: by_names                     !< columns of coordinates are called by the names of these
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(string_type), allocatable :: names(:), units(:)
+    type(heading_type) :: heading
     type(table_type) :: table
     type(error_type), allocatable :: at_close
     real(wp), allocatable :: rows(:, :)
     integer :: i
 
     call list_cam_rows(model%mechanism, model%request%cams(number), profile, names, units, rows)
-    call table%open(path, new_heading(model%mechanism%title//new_line('a')//name_of_cam(model, number), names, units), &
-                    name_and_version(model%program), err)
+    heading = new_heading(model%mechanism%title//new_line('a')//name_of_cam(model, number), names, units)
+    if (by_names) call heading%call_by_names(model%mechanism%names)
+    call table%open(path, heading, name_and_version(model%program), err)
     do i = 1, size(rows, 2)
       if (allocated(err)) exit
       call table%write_row(rows(:, i), err)

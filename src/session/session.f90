@@ -128,7 +128,7 @@ contains
       if (.not. options%has('quiet')) call print_unused_options(error_unit, options, model)
       call read_structure_only(document, structure, partition, diagnostics)
       if (.not. diagnostics%failed()) then
-        if (.not. options%has('quiet')) call print_names_of_vectors(error_unit)
+        if (.not. options%has('quiet')) call print_names_of_vectors(error_unit, diagnostics%names)
         call print_structure(output_unit, structure, partition%vectors)
       end if
     else

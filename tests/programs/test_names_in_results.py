@@ -8,7 +8,7 @@ import os
 import numpy as np
 import pytest
 
-from mech9_cases import read_table, run, text_of
+from mech9_cases import TREE, read_table, run, text_of
 
 DONE, USAGE = 0, 2
 
@@ -123,3 +123,35 @@ def test_hdf5_files_have_names(checks, mech9k, tmp_path):
         checks.true([text.decode().strip() for text in file['coordinate_name'][()]] == ['A', '', 'C', 'D'], 'names of pairs')
         checks.true([text.decode().strip() for text in file['structure/link_name'][()]] == ['', 'crank', '', 'rocker'], 'names of links')
         checks.true('q' in file and file['q'].shape == (9, 4), 'columns stay numbered')
+
+
+def test_structure_tells_names(checks, mech9k, mech9d, tmp_path):
+    """The names stand beside the vectors, which keep their numbers; --quiet leaves them out."""
+    path = write(tmp_path)
+    for program in (mech9k, mech9d):
+        done = run(program, path, '--structure')
+        checks.true('links: 2 (crank), 4 (rocker)\ncoordinates: 1 (A), 3 (C), 4 (D)\n' in done.stderr, f'the names: {done.stderr}')
+        checks.true(done.stdout.startswith('nrg = ') and '(' not in done.stdout, f'the vectors: {done.stdout}')
+        checks.equal(run(program, path, '--structure', '--quiet').stderr, '', 'nothing else where it is quiet')
+    unnamed = write(tmp_path, "&structure cq=1 /\n&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /\n")
+    checks.true('links:' not in run(mech9k, unnamed, '--structure').stderr, 'no list without names')
+
+
+def test_cams_by_names(checks, mech9k, tmp_path):
+    text = text_of(os.path.join(TREE, 'examples', 'dwell_cam', 'dwell_cam.nml')).replace("coordinate=1, links=1,2", "coordinate=1, name='shaft', links=1,2")
+    path = write(tmp_path, text + "&link number=2, name='disc' /\n")
+    tables = []
+    for options in ((), ('--names',)):
+        done = run(mech9k, path, '--cam', '1:cam.dat', *options, folder=tmp_path)
+        checks.true(done.returncode == DONE and 'without effect' not in done.stderr, f'{options}: {done.stderr}')
+        checks.true('cam 1: link 2 (disc), and a roller' in done.stderr, f'the cam has its name: {done.stderr}')
+        tables.append(read_table(text_of(os.path.join(tmp_path, 'cam.dat'))))
+    checks.true('q1' in tables[0] and 'shaft.q' not in tables[0] and 'q1' not in tables[1], f'columns: {list(tables[1])}')
+    checks.true(np.array_equal(tables[0]['q1'], tables[1]['shaft.q']), 'the same numbers')
+
+
+def test_poles_tell_names(checks, mech9k, tmp_path):
+    done = run(mech9k, write(tmp_path), '--no-write', '--animate', 'film.svg', '--set', "output.poles=3,'rocker'", folder=tmp_path)
+    checks.equal(done.returncode, DONE, done.stderr)
+    picture = text_of(os.path.join(tmp_path, 'film.svg'))
+    checks.true('<title>velocity pole of link 4 (rocker)</title>' in picture and '<title>velocity pole of link 3</title>' in picture, 'poles')

@@ -66,3 +66,18 @@ def test_functions_and_studies_follow_formulas(checks, mech9):
     h = 2.0**-10
     slope = (f(np.array([0.3 + h, 0.4])) - f(np.array([0.3 - h, 0.4])))[0] / (2 * h)
     checks.near(j[0, 0], slope, 1e-5, 'the derivative by a is a slope')
+
+
+def test_answers_by_names(checks, mech9):
+    """Assemblies, equilibria and ranges know the names of pairs; a range tells what limits it."""
+    m = mech9.read_text(GROUPS.replace("&drive coordinate='A', kind='polynomial', coefficients=0.4, 10 /", """
+&initial coordinate='A', position=0.4, velocity=0 /
+&gravity acceleration=0,-9.81,0 /
+&body link=3, mass=1, centre=0.5,0,0, inertia=0,0,0.1,0,0,0 /""").replace('value=0.3', 'value=0.9'))
+    for rows in (m.assemblies(), m.equilibrium()):
+        checks.true(np.array_equal(rows['D.q'], rows['q4']), 'a column by the name of its pair')
+    ranges = m.range()
+    checks.equal(ranges.report['coordinate_names'], ['A', 'B', '', 'D'], 'names by numbers')
+    told, = ranges.report['ranges']
+    checks.equal((told['coordinate'], told['name']), (1, 'A'), 'the coordinate by number and name')
+    checks.true('2 (B), 3, 4 (D)' in told['limited_by'], f'the limit by names: {told}')

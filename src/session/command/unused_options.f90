@@ -30,7 +30,8 @@ contains
       return
     end if
     if (answer /= '') then
-      call list_given(options, of_runs, names)
+      ! the table of a cam has names, too
+      call list_given(options, pack(of_runs, of_runs /= 'names' .or. answer /= 'cam'), names)
       if (names /= '') write (unit, '(a)') name//': without effect: '//names//'; --'//answer//' makes no run'
     end if
     if (answer == 'structure') then

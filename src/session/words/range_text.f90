@@ -14,7 +14,7 @@ module mech9_range_text
   use mech9_explanation, only: explain
   implicit none
   private
-  public :: print_ranges
+  public :: print_ranges, limits_in_words
 
   !> Significant digits of a limit, whose relative error is about 1e-12.
   integer, parameter :: digits = 13
@@ -45,9 +45,21 @@ contains
       write (unit, '(a)') column('q'//to_text(k), 6)//column(to_text(factor*range%start, digits), width)// &
         column(value_of(range%lower, factor), width)//column(value_of(range%upper, factor), width)// &
         column(name, 6)//named_column(trim(name_in(model%mechanism%names%coordinates, k)), named)// &
-        with_names(model%mechanism%names, reasons(plan, range, factor, name))
+        limits_in_words(model, plan, k, range)
     end do
   end subroutine print_ranges
+
+  !> The causes of the limits of a coordinate on both sides, with the names of coordinates.
+  pure function limits_in_words(model, plan, coordinate, range) result(text)
+    type(model_type), intent(in) :: model         !< the model
+    type(plan_type), intent(in) :: plan           !< the plan of the mechanism
+    integer, intent(in) :: coordinate             !< number of the coordinate
+    type(motion_range_type), intent(in) :: range  !< its range
+    character(len=:), allocatable :: text
+
+    text = with_names(model%mechanism%names, reasons(plan, range, 1.0_wp/unit_of(model%mechanism, coordinate), &
+                                                     trim(unit_name(model%mechanism, coordinate))))
+  end function limits_in_words
 
   !> Width of the column of names; 0 where no independent coordinate has a name.
   pure integer function name_width(names, independent) result(letters)

@@ -41,16 +41,29 @@ contains
     write (unit, '(2a)') 'nrw = ', to_text(vectors%nrw, ' ')
   end subroutine print_structure
 
-  !> Write the meaning of the structural vectors, one in each line.
-  subroutine print_names_of_vectors(unit)
-    integer, intent(in) :: unit  !< Fortran unit to write to
+  !> Write the meaning of the structural vectors, one in each line, and the names of the links and pairs that they number.
+  subroutine print_names_of_vectors(unit, names)
+    integer, intent(in) :: unit                   !< Fortran unit to write to
+    type(part_names_type), intent(in) :: names    !< of links and pairs
 
     write (unit, '(a)') 'The structural vectors, an element for each place in the order of computation:'
     write (unit, '(a)') '  nrg  number of the link that is reached; a chain that closes ends on a link that was reached before'
     write (unit, '(a)') '  nws  number of the coordinate of the pair that leads there; 0 where a chain starts'
     write (unit, '(a)') '  rdw  kind of that coordinate: 1 independent (and where a chain starts), 0 dependent'
     write (unit, '(a)') '  nrw  number of closed chains so far; it grows by one at the link on which a chain closes'
+    call print_called(unit, 'links: ', names%links)
+    call print_called(unit, 'coordinates: ', names%coordinates)
   end subroutine print_names_of_vectors
+
+  !> Write the numbers that have names, with these; nothing where none has.
+  subroutine print_called(unit, words, list)
+    integer, intent(in) :: unit                               !< Fortran unit to write to
+    character(len=*), intent(in) :: words                     !< text before the list
+    character(len=*), allocatable, intent(in) :: list(:)      !< names by numbers; not allocated: none
+
+    if (.not. allocated(list)) return
+    write (unit, '(2a)') words, named_list(list, numbers_of(list /= ''), size(list))
+  end subroutine print_called
 
   !> Write counts, mobility and redundancy.
   subroutine print_mobility(unit, mechanism, plan)
