@@ -172,8 +172,9 @@ int mech9_modes(const mech9_mechanism *mechanism, mech9_results **results, mech9
 int mech9_assemblies(const mech9_mechanism *mechanism, int starts, const volatile int *stop, mech9_results **results,
                      mech9_error *error);
 int mech9_range(const mech9_mechanism *mechanism, const volatile int *stop, mech9_results **results, mech9_error *error);
-/* Lyapunov exponents, as many as are asked for: the numbers L1, L2, ... and their standard errors L1.error, ...; a row for each time of
-   the running means. */
+/* Lyapunov exponents, as many as are asked for: the numbers L1, L2, ..., their standard errors L1.error, ..., what they changed by in the
+   second half of the time, L1.change, ..., and the mean divergence (not a number unless all exponents are asked for); a row for each time
+   of the running means. An interrupted call has the results up to there. */
 int mech9_exponents(const mech9_mechanism *mechanism, int count, const volatile int *stop, mech9_results **results,
                     mech9_error *error);
 /* Branches of positions over the parameter of this name, of rest where with_forces is not 0: a row for each point, with the columns of

@@ -379,11 +379,16 @@ def _times_along(at: Any) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Exponents:
-    """The Lyapunov exponents [1/s], largest first, with their standard errors; the means over the times up to t, `history` (times, exponents)."""
+    """The Lyapunov exponents [1/s], largest first, with their standard errors; the means over the times up to t, `history` (times, exponents).
+
+    changes: what these means changed by in the second half of the time. divergence: the mean divergence along the motion [1/s], with which
+    the sum of all exponents agrees; NaN where not all were asked for."""
     values: np.ndarray
     errors: np.ndarray
     t: np.ndarray
     history: np.ndarray
+    changes: np.ndarray
+    divergence: float
 
 
 def multipliers_of(found: dict[str, Any]) -> np.ndarray:

@@ -1,6 +1,7 @@
 !> Analyses for C: each takes a mechanism and gives results (include/mech9.h).
 module mech9_api_analyses
   use, intrinsic :: iso_c_binding, only: c_int, c_ptr, c_null_ptr
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use mech9, only: wp, error_type, finding_type, mechanism_type, run_type, rest_type, study_type, optimum_type, &
     exponents_found_type, find_motion_exponents, &
     judge_mobility, list_assemblies, list_ranges, name_coordinates, report_parts, find_cam, draw_sketch, &
@@ -161,7 +162,8 @@ contains
     type(c_ptr), value, intent(in) :: mechanism   !< the mechanism
     integer(c_int), value, intent(in) :: count    !< how many exponents are found
     type(c_ptr), value, intent(in) :: stop        !< address of a number that stops the motion once it is not 0, or null
-    type(c_ptr), intent(out) :: results           !< a row for each time of the running means, the exponents; null after a failure
+    type(c_ptr), intent(out) :: results           !< a row for each time of the running means, the exponents; null after a failure,
+                                                  !< but for an interruption after the transient
     type(c_ptr), value, intent(in) :: error       !< handle of errors, or null
     type(mechanism_type), pointer :: moved
     type(exponents_found_type) :: exponents
@@ -176,17 +178,21 @@ contains
     call new_interruption(stop, interruption)
     call find_mechanism(mechanism, moved, err)
     if (.not. allocated(err)) call find_motion_exponents(moved, int(count), exponents, err, interruption)
-    if (.not. allocated(err)) then
+    ! an interrupted motion has the means up to there
+    if (allocated(exponents%exponents)) then
       allocate (found)
       n = size(exponents%exponents)
-      allocate (names(2*n))
+      allocate (names(3*n + 1))
       do k = 1, n
         write (names(k), '(a,i0)') 'L', k
         names(n + k) = trim(names(k))//'.error'
+        names(2*n + k) = trim(names(k))//'.change'
       end do
+      names(3*n + 1) = 'divergence'
       call put_texts(names, found%number_names)
-      call put_texts([('1/s', k=1, 2*n)], found%number_units)
-      found%numbers = [exponents%exponents, exponents%errors]
+      call put_texts([('1/s', k=1, 3*n + 1)], found%number_units)
+      if (.not. exponents%knows_divergence) exponents%divergence = ieee_value(1.0_wp, ieee_quiet_nan)
+      found%numbers = [exponents%exponents, exponents%errors, exponents%changes, exponents%divergence]
       call put_texts(['t               ', names(:n)], found%names)
       call put_texts(['s  ', ('1/s', k=1, n)], found%units)
       found%count = size(exponents%times)

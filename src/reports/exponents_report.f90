@@ -8,7 +8,8 @@ module mech9_exponents_report
 
 contains
 
-  !> Add the exponents, largest first, their standard errors and their running means: [[t, first, second, ...], ...].
+  !> Add the exponents, largest first, their standard errors, what they changed by in the second half of the time, the mean divergence
+  !> and their running means: [[t, first, second, ...], ...].
   subroutine add_exponents(json, found)
     type(json_type), intent(inout) :: json               !< the report, inside its object
     type(exponents_found_type), intent(in) :: found      !< the exponents; not found after a failure
@@ -17,6 +18,8 @@ contains
     if (.not. allocated(found%exponents)) return
     call json%add('exponents', found%exponents)
     call json%add('exponents_error', found%errors)
+    call json%add('exponents_change', found%changes)
+    if (found%knows_divergence) call json%add('divergence', found%divergence)
     call json%begin_array('exponents_history')
     do i = 1, size(found%times)
       call json%begin_array()

@@ -30,15 +30,16 @@ contains
     type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
     logical, intent(out) :: reported                        !< the report is written
     type(exponents_found_type) :: found
-    type(error_type), allocatable :: err
+    type(error_type), allocatable :: err, of_table
 
     reported = .false.
     call check_times_of_laws(model, .true., diagnostics)
     if (diagnostics%failed()) return
     call find_exponents(model, options%number('exponents', 1), found, err, signal_interruption_type())
-    if (.not. allocated(err)) then
+    if (allocated(found%exponents)) then
       if (.not. options%has('quiet')) call print_exponents(error_unit, model, found)
-      call write_table(options, model, found, err)
+      call write_table(options, model, found, of_table)
+      if (allocated(of_table)) call diagnostics%add_error(of_table)
     end if
     if (allocated(err)) call diagnostics%add_error(err)
     if (.not. options%has('report')) return
@@ -52,18 +53,22 @@ contains
     integer, intent(in) :: unit                          !< Fortran unit to write to
     type(model_type), intent(in) :: model                !< the model
     type(exponents_found_type), intent(in) :: found      !< the exponents
+    character(len=:), allocatable :: words
     integer :: k
 
     if (model%mechanism%title /= '') write (unit, '(a)') model%mechanism%title
     do k = 1, size(found%exponents) - found%lost
       write (unit, '(a)') 'exponent '//to_text(k)//': '//to_text(found%exponents(k), 6)//' 1/s, standard error '// &
-        to_text(found%errors(k), 2)
+        to_text(found%errors(k), 2)//', change in the second half of the time '//to_text(found%changes(k), 2)
     end do
     do k = size(found%exponents) - found%lost + 1, size(found%exponents)
       write (unit, '(a)') 'exponent '//to_text(k)//': minus infinity, since events make neighbouring motions the same'
     end do
-    if (size(found%exponents) == found%states .and. found%lost == 0) &
-      write (unit, '(a)') 'their sum: '//to_text(sum(found%exponents), 6)//' 1/s'
+    if (size(found%exponents) == found%states .and. found%lost == 0) then
+      words = 'their sum: '//to_text(sum(found%exponents), 8)//' 1/s'
+      if (found%knows_divergence) words = words//'; mean divergence '//to_text(found%divergence, 8)//' 1/s'
+      write (unit, '(a)') words
+    end if
     write (unit, '(a)') 'means from t = '//to_text(found%from, 6)//' s to '//to_text(found%to, 6)//' s; '// &
       counted(found%orthonormalised, 'orthonormal set')//' of directions'
     if (found%coordinate_changes > 0) &

@@ -41,7 +41,15 @@ def test_exponents(checks, mech9, oscillator):
     checks.near(found.values, [-1, -4], 1e-8, 'the roots', scale=1)
     checks.equal((found.history.shape, found.t[-1]), ((200, 2), 40.0), 'the running means')
     checks.near(found.history[-1], found.values, 1e-15, 'they end with the exponents')
-    checks.near(oscillator.exponents(transient=20, time=5).values, [-1], 1e-6, 'one exponent, over another time', scale=1)
+    checks.near([found.divergence, *found.changes], [-5, 0, 0], 1e-8, 'the mean divergence, and changes in the second half', scale=1)
+    alone = oscillator.exponents(transient=20, time=5)
+    checks.near(alone.values, [-1], 1e-6, 'one exponent, over another time', scale=1)
+    checks.true(np.isnan(alone.divergence), 'is not held against the divergence')
+    oscillator.add('exponents', transient=20)
+    oscillator.add('parameter', name='d', sets='load(2).damping', low=5, high=6, count=2)
+    oscillator.add('study', kind='grid', exponents=2)
+    study = oscillator.study(threads=2)
+    checks.near(np.array([study['L1'], study['L2']]), np.transpose([[-1, -4], [-3 + 5**0.5, -3 - 5**0.5]]), 1e-7, 'those of a study', scale=1)
     with pytest.raises(mech9.UsageError):
         oscillator.exponents(3)
 

@@ -322,6 +322,7 @@ def test_exponents_through_impacts(checks, mech9d, tmp_path):
     report = exponents(mech9d, tmp_path, OSCILLATOR + TIGHT, 2, 500 + 600 * period, 'transient=500')
     # tolerance: the sum is exact over whole periods
     checks.near(sum(report['exponents']), -0.2 + 2 * log(0.8) / period, 1e-9, 'the sum', scale=1)
+    checks.near(report['divergence'], -0.2 + 2 * log(0.8) / period, 1e-9, 'the mean divergence', scale=1)
     checks.near(report['exponents'], [-0.1 + log(0.8) / period] * 2, 2e-3, 'both are equal: the multipliers are complex', scale=1)
 
 
@@ -329,7 +330,11 @@ def test_lost_directions(checks, mech9d, tmp_path):
     """Neighbouring motions become the same where a stop holds a coordinate: exponents of minus infinity; those of another freedom stay."""
     plain = '\n'.join(line for line in BOUNCING.splitlines() if 'parameter' not in line) + '\n'
     report = exponents(mech9d, tmp_path, plain, 2, 12.0, 'transient=1')
-    checks.equal(report['exponents'] + report['exponents_error'], [None] * 4, 'both are lost')
+    checks.equal(report['exponents'] + report['exponents_error'] + report['exponents_change'], [None] * 6, 'both are lost')
+    checks.true('divergence' not in report, 'no divergence is known', report.keys())
+    pushed = plain.replace('restitution=0.9', 'restitution=0') + "&load kind='coordinate', coordinate=1, stiffness=4, damping=5 /\n"
+    report = exponents(mech9d, tmp_path, pushed, 2, 12.0, 'transient=0.1')
+    checks.equal(report['exponents'], [None] * 2, 'also where round-off is left of a direction')
     beside = plain.replace('cq=1', 'cq=1,2') + """&pair coordinate=2, links=1,3, kind='prismatic', axis=1,0,0 /
 &body link=3, mass=1 /
 &load kind='coordinate', coordinate=2, stiffness=4, damping=0.3 /

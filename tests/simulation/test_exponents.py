@@ -123,6 +123,33 @@ def decay(folder):
     return -float(read_table((folder / 'modes.dat').read_text())['eigenvalue.re'][0])
 
 
+def test_mean_divergence(checks, mech9d, tmp_path):
+    """A damper whose force is cubic in the rate: the mean divergence is -3 c/m times the mean square of the rate, which a run tells; so it is in
+    a closed chain, by its crank and by its rocker, where the sum of the exponents is that of the roots at rest."""
+    text = PENDULUM.replace('force=1.5', 'force=0.6').replace('damping=0.5 /', "damping=0.1 /\n&load kind='coordinate', coordinate=1, force=-0.2, law='polynomial', "
+                            "over='dq1', coefficients=0,0,0,1 /") + '&solver relative_tolerance=1e-11, absolute_tolerance=1e-11 /\n'
+    report, table, _ = go(mech9d, tmp_path, text, 2, 300.0, 'transient=50')
+    runs = {}
+    for end in (50.0, 300.0):
+        (tmp_path / 'run.nml').write_text(f"{text}&quantity name='rms', of='dq1', take='rms' /\n&time end={end}, intervals={60 * int(end)} /\n")
+        done = run(mech9d, tmp_path / 'run.nml', '--no-write', '--report', tmp_path / 'run.json')
+        checks.true(done.returncode == 0, 'the run', done.stderr)
+        runs[end] = json.loads((tmp_path / 'run.json').read_text())['quantities'][0]['value']
+    square = (300 * runs[300.0]**2 - 50 * runs[50.0]**2) / 250
+    # tolerance: a hundred rows in each second; the motion is regular
+    checks.near(report['divergence'], -0.1 - 0.6 * square, 1e-7, 'the mean divergence', scale=1)
+    checks.near(sum(report['exponents']), report['divergence'], 1e-9, 'and the sum of the exponents', scale=1)
+    checks.near(report['exponents_change'], [table[name][-1] - table[name][99] for name in ('L1', 'L2')], 1e-15, 'changes in the second half')
+    report, _, _ = go(mech9d, tmp_path, text, 1, 300.0, 'transient=50')
+    checks.true('divergence' not in report, 'one exponent alone is not held against it')
+    for start in ('cq=1 /\n&initial coordinate=1, position=0.5, velocity=1 /\n&initial coordinate=4, position=1.7 /\n',
+                  'cq=4 /\n&initial coordinate=4, position=2.6179938779914944, velocity=0 /\n&initial coordinate=1, position=0.5 /\n'):
+        report, _, said = go(mech9d, tmp_path, '&structure ' + start + FOUR_BAR, 2, 60.0, 'transient=0.1')
+        # tolerance: Gauss's formula of eighth order in steps of 1e-10
+        checks.near(sum(report['exponents']), report['divergence'], 1e-7, 'a closed chain', scale=1)
+        checks.true('; mean divergence ' in said, 'is told', said)
+
+
 def test_motors(checks, mech9d, tmp_path):
     """A motor with inductance: three exponents, the roots of its equations; the place of the slider is free."""
     text = SLIDER + "&motor coordinate=1, kind='dc', voltage=1, resistance=2, inductance=0.5, constant=1 /\n"
@@ -131,6 +158,7 @@ def test_motors(checks, mech9d, tmp_path):
     roots = sorted(np.roots([1, 4, 2]).real, reverse=True)
     checks.near(report['exponents'], [0, *roots], 1e-6, 'zero and both roots', scale=1)
     checks.equal(report['states'], 3, 'coordinate, rate and current')
+    checks.near(report['divergence'], -4, 1e-9, 'the divergence, in which the current counts', scale=1)
 
 
 @pytest.mark.parametrize('count, text, settings, code, message', [

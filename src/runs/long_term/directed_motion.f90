@@ -1,16 +1,36 @@
 !> Motions with directions beside them, by which neighbouring motions are known: which results they leave out, and why they may end early.
 module mech9_directed_motion
+  use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_singular
   use mech9_text, only: to_text
+  use mech9_model, only: model_type
   use mech9_request, only: output_settings_type
   use mech9_event_failures, only: failure_event_sensitivity
   use mech9_simulation_failures, only: failure_angles_sensitivity
   use mech9_sensitivity_words, only: find_cause_at_event
   implicit none
   private
-  public :: keep_motion_alone, explain_refusal
+  public :: set_directions, keep_motion_alone, explain_refusal
 
 contains
+
+  !> Give a model parameters that set nothing, one for each direction, and no results but its motion.
+  subroutine set_directions(count, model)
+    integer, intent(in) :: count              !< how many directions there are
+    type(model_type), intent(inout) :: model  !< the model
+    integer :: i
+
+    if (allocated(model%parameters)) deallocate (model%parameters)
+    allocate (model%parameters(count))
+    do i = 1, count
+      model%parameters(i)%name = 'direction '//to_text(i)
+      allocate (model%parameters(i)%targets(0))
+    end do
+    if (allocated(model%request%quantities)) deallocate (model%request%quantities)
+    model%request%solver%accuracy = 0.0_wp
+    call keep_motion_alone(model%request%output)
+    model%request%output%sensitivities = .true.
+  end subroutine set_directions
 
   !> Leave out all results but the motion of all coordinates.
   pure subroutine keep_motion_alone(output)

@@ -3,28 +3,30 @@
 !> Directions are integrated with the motion by its exact variational equations, those of the derivatives by parameters: each direction is
 !> the derivative by a parameter that sets no number. They are made orthonormal again and again; the logarithms of what this takes off
 !> are summed (Benettin, Galgani, Giorgilli and Strelcyn; Shimada and Nagashima in docs/reference/bibliography.md). Directions are compared
-!> by all coordinates and their rates, each in its unit, so that a change of independent coordinates does not change them. Events carry
+!> by all coordinates and their rates, each in its unit, so that a change of independent coordinates does not change them. The sum of all
+!> exponents is held against the mean divergence, which comes from directions of its own (mech9_orbit_divergence). Events carry
 !> them on by their derivatives (mech9_event_variation). Where a stop or friction holds a coordinate, neighbouring motions become the same:
 !> directions are lost for good, whose exponents are minus infinity.
 module mech9_exponents
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_negative_inf, ieee_quiet_nan
   use mech9_failure_units, only: tell_in_units
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, exit_usage, exit_data
+  use mech9_error, only: error_type, raise, exit_usage, exit_data, exit_interrupted
   use mech9_text, only: to_text
   use mech9_random, only: random_type
   use mech9_model, only: model_type
   use mech9_partition, only: free_coordinate
   use mech9_variable_model, only: variable_model_type
-  use mech9_directed_motion, only: keep_motion_alone, explain_refusal
+  use mech9_directed_motion, only: set_directions, explain_refusal
   use mech9_simulation, only: interruption_type
   use mech9_sensitivity, only: sensitivity_type
   use mech9_motion_sensitivity, only: motion_sensitivity_type
   use mech9_free_simulation, only: free_simulation_type
   use mech9_model_motion, only: model_motion_type
+  use mech9_orbit_divergence, only: orbit_divergence_type
   implicit none
   private
-  public :: exponents_found_type, find_exponents, count_states, set_directions
+  public :: exponents_found_type, find_exponents, refuse_exponents, count_states
 
   !> Times at which the running means are kept, and blocks of time for standard errors.
   integer, parameter :: kept_times = 200, blocks = 20
@@ -36,17 +38,21 @@ module mech9_exponents
   real(wp), parameter :: growth = 1.5_wp
   !> Beyond this difference directions that were integrated since the last time are parallel within the tolerances.
   real(wp), parameter :: parallel = 18.0_wp
-  !> A direction is lost at an event where less than this part of it is left across those before: round-off, far below what parallel ones have.
+  !> A direction is lost at an event where less than this part of it is left across those before: round-off, far below what parallel ones
+  !> have.
   real(wp), parameter :: lost_part = 1.0e-11_wp
 
   !> The exponents and how they were found.
   type :: exponents_found_type
     real(wp), allocatable :: exponents(:)     !< (K) largest first [1/s]
     real(wp), allocatable :: errors(:)        !< (K) their standard errors, from means over blocks of time [1/s]
+    real(wp), allocatable :: changes(:)       !< (K) what the means changed by in the second half of the time [1/s]
     real(wp), allocatable :: times(:)         !< (n) times of the running means [s]
     real(wp), allocatable :: history(:, :)    !< (K,n) the means from the end of the transient up to these times [1/s]
     real(wp) :: from = 0.0_wp                 !< end of the transient [s]
     real(wp) :: to = 0.0_wp                   !< end of the sums [s]
+    logical :: knows_divergence = .false.     !< all exponents were found, and none was lost
+    real(wp) :: divergence = 0.0_wp           !< mean divergence along the motion, with which their sum agrees [1/s]
     integer :: states = 0                     !< dimension of the state without time: so many exponents there are
     integer :: orthonormalised = 0            !< how often directions were made orthonormal
     integer :: coordinate_changes = 0         !< of the independent coordinates
@@ -84,7 +90,7 @@ contains
     end do
   end function count_states
 
-  !> Find the first exponents of a model. Fails with exit_data where nothing is free to move, or where contacts do not allow them, with exit_usage where there are not so many, and as a motion does.
+  !> Find the first exponents of a model. Fails with exit_data where nothing is free to move, or where contacts do not allow them, with exit_usage where there are not so many, and as a motion does. Where the user interrupts, means up to there are found.
   subroutine find_exponents(given, count, found, err, interruption)
     type(model_type), intent(in) :: given                            !< the model
     integer, intent(in) :: count                                     !< how many exponents are found
@@ -96,7 +102,7 @@ contains
     type(constant_model_type), pointer :: variable
 
     found%states = count_states(given)
-    call refuse(given, count, found%states, err)
+    call refuse_exponents(given, count, err)
     if (allocated(err)) return
     allocate (model, source=given)
     allocate (motion, variable)
@@ -111,12 +117,13 @@ contains
   end subroutine find_exponents
 
   !> Fail where exponents do not exist or are not known.
-  subroutine refuse(model, count, states, err)
+  subroutine refuse_exponents(model, count, err)
     type(model_type), intent(in) :: model               !< the model
     integer, intent(in) :: count                        !< how many exponents are wanted
-    integer, intent(in) :: states                       !< dimension of the state
     type(error_type), allocatable, intent(out) :: err   !< allocated where they are refused
+    integer :: states
 
+    states = count_states(model)
     if (model%is_driven()) then
       call raise(err, exit_data, 'every independent coordinate is driven, so that no exponent exists; leave out a &drive')
       if (size(model%problem%drives) > 0) err%place = model%problem%drives(1)%drive%place
@@ -131,25 +138,7 @@ contains
       call raise(err, exit_data, 'the transient of the exponents ends after the motion; give a later end= in &time, or time= '// &
                  'in &exponents', model%request%exponents%place)
     end if
-  end subroutine refuse
-
-  !> Give a model parameters that set nothing, one for each direction, and no results but its motion.
-  subroutine set_directions(count, model)
-    integer, intent(in) :: count              !< how many directions there are
-    type(model_type), intent(inout) :: model  !< the model
-    integer :: i
-
-    if (allocated(model%parameters)) deallocate (model%parameters)
-    allocate (model%parameters(count))
-    do i = 1, count
-      model%parameters(i)%name = 'direction '//to_text(i)
-      allocate (model%parameters(i)%targets(0))
-    end do
-    if (allocated(model%request%quantities)) deallocate (model%request%quantities)
-    model%request%solver%accuracy = 0.0_wp
-    call keep_motion_alone(model%request%output)
-    model%request%output%sensitivities = .true.
-  end subroutine set_directions
+  end subroutine refuse_exponents
 
   !> The model, whatever its parameters.
   subroutine same_model(self, values, model, err)
@@ -171,7 +160,9 @@ contains
     class(interruption_type), intent(in), optional :: interruption   !< is asked whether the motion shall stop
     type(sensitivity_type) :: unused
     type(log_sums_type) :: sums
+    type(orbit_divergence_type) :: divergence
     real(wp) :: logs(count), start, direction, longest
+    logical :: holds
 
     associate (request => simulation%model%request)
       start = request%time%start
@@ -192,12 +183,56 @@ contains
     if (allocated(err)) return
     sums%count = 0
     call sums%add(found%from, 0.0_wp*logs)
-    call advance(simulation, found%to, longest, found, sums, err)
+    holds = count == found%states
+    if (holds) call begin_divergence(simulation, divergence, err)
     if (allocated(err)) return
+    if (holds) then
+      call advance(simulation, found%to, longest, found, sums, err, divergence)
+    else
+      call advance(simulation, found%to, longest, found, sums, err)
+    end if
+    if (allocated(err)) then
+      if (err%code /= exit_interrupted .or. sums%count < 2) return
+      found%to = sums%times(sums%count)
+    else if (holds) then
+      call end_divergence(simulation, divergence, found, err)
+      if (allocated(err)) return
+    end if
     call evaluate(sums, found)
     found%lost = count_lost(sums)
     found%coordinate_changes = size(simulation%coordinate_changes)
   end subroutine follow
+
+  !> Begin to integrate the divergence, with orthonormal directions. The volume that is summed is that of all coordinates: that of the
+  !> directions, over their volume in the free coordinates.
+  subroutine begin_divergence(simulation, divergence, err)
+    type(free_simulation_type), intent(inout) :: simulation      !< the motion, with orthonormal directions
+    type(orbit_divergence_type), intent(inout) :: divergence     !< begins
+    type(error_type), allocatable, intent(out) :: err            !< allocated if it failed
+    real(wp) :: log_volume
+    integer :: i
+
+    associate (motors => simulation%model%mechanism%motors)
+      call divergence%begin(simulation, pack([(i, i=1, size(motors))], [(motors(i)%motor%has_state(), i=1, size(motors))]), err)
+    end associate
+    if (.not. allocated(err)) call divergence%log_determinant_here(simulation, log_volume, err)
+    divergence%log_volume = log_volume
+  end subroutine begin_divergence
+
+  !> Find the mean divergence, with orthonormal directions.
+  subroutine end_divergence(simulation, divergence, found, err)
+    type(free_simulation_type), intent(inout) :: simulation      !< the motion, with orthonormal directions
+    type(orbit_divergence_type), intent(inout) :: divergence     !< up to here
+    type(exponents_found_type), intent(inout) :: found           !< gets the mean
+    type(error_type), allocatable, intent(out) :: err            !< allocated if it failed
+    real(wp) :: log_volume
+
+    found%knows_divergence = divergence%is_known
+    if (.not. divergence%is_known) return
+    call simulation%stand_at_step(err)
+    if (.not. allocated(err)) call divergence%log_determinant_here(simulation, log_volume, err)
+    if (.not. allocated(err)) found%divergence = (divergence%log_volume - log_volume)/abs(found%to - found%from)
+  end subroutine end_divergence
 
   !> Let the directions begin at random, so that none is left out.
   subroutine set_start(simulation)
@@ -220,13 +255,14 @@ contains
   end subroutine set_start
 
   !> Go on to a time, by steps that end there, and sum the logarithms on the way.
-  subroutine advance(simulation, t, longest, found, sums, err)
+  subroutine advance(simulation, t, longest, found, sums, err, divergence)
     type(free_simulation_type), intent(inout) :: simulation     !< the motion, started
     real(wp), intent(in) :: t                                   !< the time [s]
     real(wp), intent(in) :: longest                             !< longest time between two orthonormal sets [s]
     type(exponents_found_type), intent(inout) :: found          !< counts them
     type(log_sums_type), intent(inout) :: sums                  !< gets the sums
     type(error_type), allocatable, intent(out) :: err           !< allocated if it failed
+    type(orbit_divergence_type), intent(inout), optional :: divergence   !< is integrated, too; not unless given
     real(wp) :: logs(found_size(simulation)), from, to, since, interval, spread
     logical :: at_joint, passed
 
@@ -240,6 +276,11 @@ contains
       call tell_in_units(err, simulation%model%mechanism)
       if (allocated(err)) return
       passed = passed .or. at_joint
+      if (present(divergence)) then
+        call divergence%add_step(simulation, from, to, err)
+        if (at_joint .and. .not. allocated(err)) call divergence%pass(simulation, err)
+        if (allocated(err)) return
+      end if
       if (abs(t - to) > 0.0_wp .and. (at_joint .or. abs(to - since) < interval)) cycle
       if (at_joint) call simulation%leave_joint(err)
       if (allocated(err)) return
@@ -289,7 +330,8 @@ contains
     call take_directions(simulation, directions)
     do p = 1, size(logs)
       if (lost_at(p) < huge(length)) cycle
-      before = norm2(directions(:, p))
+      ! directions had the length 1; round-off is measured against that
+      before = max(1.0_wp, norm2(directions(:, p)))
       ! twice is enough against round-off
       do again = 1, 2
         do r = 1, p - 1
@@ -413,7 +455,8 @@ contains
       means(:, i) = (sums%at(found%from + (found%to - found%from)*real(i, wp)/blocks) &
                      - sums%at(found%from + (found%to - found%from)*real(i - 1, wp)/blocks))*blocks/whole
     end do
-    allocate (found%errors(size(unordered)), found%times(kept_times), found%history(size(unordered), kept_times))
+    allocate (found%errors(size(unordered)), found%changes(size(unordered)))
+    allocate (found%times(kept_times), found%history(size(unordered), kept_times))
     do i = 1, kept_times
       found%times(i) = found%from + (found%to - found%from)*real(i, wp)/kept_times
       if (i == kept_times) found%times(i) = found%to
@@ -433,8 +476,10 @@ contains
     found%exponents = unordered(order)
     found%history = found%history(order, :)
     found%errors = ieee_value(whole, ieee_quiet_nan)
+    found%changes = found%errors
     do k = 1, size(unordered)
       if (sums%lost_at(order(k)) < huge(whole)) cycle
+      found%changes(k) = found%history(k, kept_times) - found%history(k, kept_times/2)
       found%errors(k) = sqrt(sum((means(order(k), :) - sum(means(order(k), :))/blocks)**2)/(blocks - 1)/blocks)
     end do
   end subroutine evaluate

@@ -19,6 +19,9 @@ module mech9_orbit_divergence
   real(wp), parameter :: weights(4) = [0.17392742256872692869_wp, 0.32607257743127307131_wp, 0.32607257743127307131_wp, &
                                        0.17392742256872692869_wp]
 
+  !> Steps below so many units in the last place of the time do not count.
+  real(wp), parameter :: shortest = 1.0e3_wp
+
   !> Integrals along a motion.
   type :: orbit_divergence_type
     logical :: is_known = .false.                    !< the integral was found up to the end
@@ -31,8 +34,13 @@ module mech9_orbit_divergence
     integer, allocatable, private :: free(:)         !< free coordinates of the last step
     real(wp), allocatable, private :: changes(:, :, :)   !< (directions,0:1,M) of all coordinates at the end of the last step
     real(wp), allocatable, private :: of_motors(:, :)    !< (directions,motors) of the motors there
+    integer, private :: plans = 0                        !< how often the plan had changed there
   contains
     procedure :: follow
+    procedure :: begin
+    procedure :: add_step
+    procedure :: pass
+    procedure :: log_determinant_here
   end type orbit_divergence_type
 
 contains
@@ -45,29 +53,15 @@ contains
     type(error_type), allocatable, intent(out) :: err           !< allocated if the motion failed
     real(wp) :: from, to, end
     logical :: at_joint
-    integer :: plans
 
-    self%is_known = .true.
-    self%log_volume = 0.0_wp
-    self%motors = motors
-    self%first = simulation%motion%system%state%q
-    self%largest_move = 0.0_wp*self%first
-    self%free = simulation%motion%system%plan%free
-    allocate (self%means(3, size(self%first)), source=0.0_wp)
     end = simulation%end
     to = simulation%motion%t
-    plans = simulation%plans()
-    call keep(self, simulation, err)
+    call self%begin(simulation, motors, err)
     do while (abs(end - to) > 0.0_wp .and. .not. allocated(err))
       call simulation%stride(end, from, to, at_joint, err)
       if (allocated(err)) return
-      if (simulation%plans() /= plans) call change_coordinates(self, simulation)
-      plans = simulation%plans()
-      if (self%is_known) call integrate(self, simulation, from, to, err)
-      if (.not. allocated(err)) call simulation%stand_at_step(err)
-      if (.not. allocated(err)) call keep(self, simulation, err)
-      if (at_joint .and. .not. allocated(err)) call pass(self, simulation, err)
-      plans = simulation%plans()
+      call self%add_step(simulation, from, to, err)
+      if (at_joint .and. .not. allocated(err)) call self%pass(simulation, err)
     end do
     if (allocated(err)) return
     call simulation%advance(end, err)
@@ -83,6 +77,52 @@ contains
                         + log_determinant(self, simulation_free(at_first%kind))
     end associate
   end subroutine follow
+
+  !> Begin at the present motion.
+  subroutine begin(self, simulation, motors, err)
+    class(orbit_divergence_type), intent(inout) :: self         !< begins anew
+    type(free_simulation_type), intent(inout) :: simulation     !< the motion, started, with as many directions as the state has numbers
+    integer, intent(in) :: motors(:)                            !< numbers of the motors with a state
+    type(error_type), allocatable, intent(out) :: err           !< allocated if it failed
+
+    self%is_known = .true.
+    self%log_volume = 0.0_wp
+    self%motors = motors
+    self%first = simulation%motion%system%state%q
+    self%largest_move = 0.0_wp*self%first
+    self%free = simulation%motion%system%plan%free
+    if (allocated(self%means)) deallocate (self%means)
+    allocate (self%means(3, size(self%first)), source=0.0_wp)
+    self%plans = simulation%plans()
+    call keep(self, simulation, err)
+  end subroutine begin
+
+  !> Add the integral over a step, and stand at its end, before what ended it.
+  subroutine add_step(self, simulation, from, to, err)
+    class(orbit_divergence_type), intent(inout) :: self         !< gets it
+    type(free_simulation_type), intent(inout) :: simulation     !< the motion, at the end of the step
+    real(wp), intent(in) :: from                                !< start of the step [s]
+    real(wp), intent(inout) :: to                               !< its end; an earlier one where the step is made anew [s]
+    type(error_type), allocatable, intent(out) :: err           !< allocated if it failed
+
+    if (simulation%plans() /= self%plans) call change_coordinates(self, simulation)
+    self%plans = simulation%plans()
+    if (self%is_known) call integrate(self, simulation, from, to, err)
+    if (.not. allocated(err)) call simulation%stand_at_step(err)
+    if (.not. allocated(err)) call keep(self, simulation, err)
+  end subroutine add_step
+
+  !> The logarithm of the volume of the directions in the free coordinates, their rates and the motors' states, at the present motion.
+  subroutine log_determinant_here(self, simulation, log_volume, err)
+    class(orbit_divergence_type), intent(inout) :: self         !< keeps the directions
+    type(free_simulation_type), intent(inout) :: simulation     !< the motion, at the end of a step
+    real(wp), intent(out) :: log_volume                         !< the logarithm
+    type(error_type), allocatable, intent(out) :: err           !< allocated if it failed
+
+    call keep(self, simulation, err)
+    log_volume = 0.0_wp
+    if (.not. allocated(err)) log_volume = log_determinant(self, self%free)
+  end subroutine log_determinant_here
 
   !> The numbers of the coordinates that are free.
   pure function simulation_free(kinds) result(free)
@@ -141,6 +181,7 @@ contains
     ! a stop that holds a coordinate leaves no volume
     if (size(self%free) /= n) self%is_known = .false.
     if (self%is_known) self%log_volume = self%log_volume + log_determinant(self, self%free) - before
+    self%plans = simulation%plans()
   end subroutine pass
 
   !> The logarithm of the volume of the directions in some coordinates, their rates, and the motors' states.
@@ -164,22 +205,29 @@ contains
     end do
   end function log_determinant
 
-  !> Add the integral over the last step.
-  subroutine integrate(self, simulation, from, to, err)
+  !> Add the integral over the last step. Where the motion within it is not certain, the step is made anew, shorter.
+  recursive subroutine integrate(self, simulation, from, to, err)
     class(orbit_divergence_type), intent(inout) :: self         !< gets it
     type(free_simulation_type), intent(inout) :: simulation     !< the motion, at the end of the step
     real(wp), intent(in) :: from                                !< start of the step [s]
-    real(wp), intent(in) :: to                                  !< its end [s]
+    real(wp), intent(inout) :: to                               !< its end [s]
     type(error_type), allocatable, intent(out) :: err           !< allocated if it failed
-    real(wp) :: trace
+    real(wp) :: trace, log_volume, means(3, size(self%first))
     integer :: i
 
+    ! a step to a time that is met but for round-off has no inside
+    if (abs(to - from) < shortest*spacing(max(abs(from), abs(to)))) return
+    log_volume = self%log_volume
+    means = self%means
     do i = 1, size(places)
       call simulation%look_at(from + places(i)*(to - from), err)
       if (allocated(err)) return
       if (abs(simulation%motion%t - to) > 0.0_wp) then
-        ! the step is made anew
-        self%is_known = .false.
+        self%log_volume = log_volume
+        self%means = means
+        self%is_known = abs(simulation%motion%t - to) < abs(to - from)
+        to = simulation%motion%t
+        if (self%is_known .and. abs(to - from) > 0.0_wp) call integrate(self, simulation, from, to, err)
         return
       end if
       self%largest_move = max(self%largest_move, abs(simulation%motion%system%state%q - self%first))

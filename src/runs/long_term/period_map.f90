@@ -23,7 +23,7 @@ module mech9_period_map
   use mech9_simulation, only: interruption_type
   use mech9_free_simulation, only: free_simulation_type
   use mech9_model_motion, only: model_motion_type
-  use mech9_exponents, only: set_directions
+  use mech9_directed_motion, only: set_directions
   use mech9_orbit_divergence, only: orbit_divergence_type
   implicit none
   private
