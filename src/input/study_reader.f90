@@ -56,6 +56,7 @@ contains
       end select
       study%sets = study%runs
       if (has_name(group, 'classes')) study%classes = get_logical(group, 'classes')
+      if (has_name(group, 'exponents')) study%exponents = get_integer(group, 'exponents')
       if (has_name(group, 'carry')) study%carry = get_text(group, 'carry')
       if (study%carry == 'both') then
         if (study%sets > most_sets) call diagnostics%add(group%span, 'there are too many runs to make each twice')

@@ -14,12 +14,15 @@ module mech9_quantity_record
   private
   public :: quantity_record_type
 
+  character(len=*), parameter :: unit_of_exponents = '1/s'
+
   type :: quantity_record_type
     type(quantity_type), allocatable :: quantities(:)
     type(tracked_quantity_type), allocatable :: tracked(:)
     real(wp), allocatable :: numbers(:)                      !< NaN before the end of the run
     real(wp), allocatable :: gradient(:, :)                  !< (P,quantities) derivatives of the numbers by the parameters, if the
                                                              !< run has them; NaN before its end and where there is none
+    integer :: exponents = 0                                 !< numbers behind them that a study adds as Lyapunov exponents
     logical :: is_finished = .false.                         !< the numbers are known
     type(columns_type) :: columns                            !< of the run
     type(quantity_pieces_type), private :: pieces            !< between outputs
@@ -44,8 +47,11 @@ contains
     integer, intent(in) :: i                          !< number of the quantity
 
     unit_length = 0
-    ! the class of a motion is of no column
-    if (i > size(self%tracked)) return
+    ! exponents and the class of a motion are of no column
+    if (i > size(self%tracked)) then
+      if (i <= size(self%tracked) + self%exponents) unit_length = len(unit_of_exponents)
+      return
+    end if
     associate (unit => self%columns%units(self%tracked(i)%column)%text)
       unit_length = len(unit)
       if (self%tracked(i)%take /= 'integral') return
@@ -253,6 +259,7 @@ contains
     character(len=unit_length(self, i)) :: unit
 
     unit = ''
+    if (len(unit) > 0 .and. i > size(self%tracked)) unit = unit_of_exponents
     if (i > size(self%tracked)) return
     unit = self%columns%units(self%tracked(i)%column)%text
     if (self%tracked(i)%take == 'integral') unit(max(1, len(unit) - 1):) = trim(merge('s ', ' s', len(unit) == 1))

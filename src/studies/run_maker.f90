@@ -2,7 +2,8 @@
 module mech9_run_maker
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, exit_done
+  use mech9_error, only: error_type, raise, exit_done, exit_singular
+  use mech9_text, only: to_text
   use mech9_model, only: model_type
   use mech9_parameter, only: parameter_type
   use mech9_study, only: study_type
@@ -11,6 +12,7 @@ module mech9_run_maker
   use mech9_simulation, only: interruption_type
   use mech9_columns, only: columns_type
   use mech9_design_run, only: run_design, run_ending_type, columns_of_runs
+  use mech9_exponents, only: exponents_found_type, find_exponents
   use mech9_end_class, only: find_cycle, find_rest
   use mech9_pair_axes, only: pair_axes_type, pair_axes, turning
   implicit none
@@ -38,6 +40,8 @@ module mech9_run_maker
     type(parameter_type), allocatable :: parameters(:)
     class(variable_model_type), allocatable :: varied            !< the model as a function of its parameters
     integer :: n_quantities = 0
+    integer :: n_taken = 0                                       !< of these, the first ones: those that the motion itself has
+    logical :: makes_motion = .true.                             !< something is wanted of the motion beside its exponents
     integer :: n_columns = 0                                     !< of the rows that are kept; 0: none are kept
     integer :: n_outputs = 0                                     !< rows of a run
     type(run_ending_type) :: ending                              !< of the last run, where it may be carried on
@@ -59,6 +63,9 @@ contains
     self%study = model%request%study
     self%parameters = model%parameters
     self%n_quantities = size(model%request%quantities)
+    self%n_taken = self%n_quantities - merge(1, 0, self%study%classes) - 2*self%study%exponents
+    self%makes_motion = self%study%exponents == 0 .or. self%n_taken > 0 .or. self%study%classes .or. self%study%carries() .or. &
+                        model%request%section%is_wanted .or. model%request%output%hdf5_runs
     allocate (self%varied, source=varied)
     if (.not. model%request%output%hdf5_runs) return
     call columns_of_runs(model, columns)
@@ -93,9 +100,9 @@ contains
     call self%varied%at(run%values, model, run%failure)
     if (.not. allocated(run%failure)) then
       if (self%study%carries()) call begin_at_ending(self%ending, model)
-      associate (quantities => run%quantities(:self%n_quantities - merge(1, 0, self%study%classes)))
-        call run_design(model, quantities, run%failure, run%rows, interruption, self%ending)
-      end associate
+      if (self%study%exponents > 0) call take_exponents(self, model, run, interruption)
+      if (self%makes_motion .and. .not. allocated(run%failure)) &
+        call run_design(model, run%quantities(:self%n_taken), run%failure, run%rows, interruption, self%ending)
     end if
     if (.not. allocated(run%failure)) then
       if (self%study%classes) call find_end(self%ending, model, run)
@@ -107,6 +114,24 @@ contains
     run%exit_code = run%failure%code
     run%quantities = ieee_value(1.0_wp, ieee_quiet_nan)
   end subroutine make
+
+  !> Take the exponents of a motion. A run without one of them fails.
+  subroutine take_exponents(self, model, run, interruption)
+    class(run_maker_type), intent(in) :: self       !< the maker
+    type(model_type), intent(in) :: model           !< the model of the run
+    type(made_run_type), intent(inout) :: run       !< gets them, or a failure
+    class(interruption_type), intent(in), optional :: interruption   !< is asked whether the run shall stop
+    type(exponents_found_type) :: found
+
+    call find_exponents(model, self%study%exponents, found, run%failure, interruption)
+    if (allocated(run%failure)) return
+    associate (count => self%study%exponents, before => self%n_taken)
+      run%quantities(before + 1:before + count) = found%exponents
+      run%quantities(before + count + 1:before + 2*count) = found%errors
+      if (found%lost > 0) call raise(run%failure, exit_singular, 'exponent '//to_text(count - found%lost + 1)//' is minus '// &
+                                     'infinity, since events make neighbouring motions the same; ask for fewer of them')
+    end associate
+  end subroutine take_exponents
 
   !> Find to what a motion goes.
   subroutine find_end(ending, model, run)

@@ -82,6 +82,9 @@ module mech9_run_explanations
     explanation_type('study', 'classes', '', &
                   'Runs can be told apart by what their motions go to, a position of rest or a periodic motion: a column of '// &
                   'the study has its number.', 'yes'), &
+    explanation_type('study', 'exponents', '', &
+                  'Each run can have its largest Lyapunov exponents, so many of them. Over a parameter they tell where motions '// &
+                  'are chaotic, over starts how well they are known.', '1'), &
     explanation_type('study', 'file', 'list', &
                   'Each line of this file has the values of all parameters, in the order of the parameters.', 'designs.dat'), &
     explanation_type('objective', 'kind', '', &

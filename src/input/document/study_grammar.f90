@@ -65,6 +65,9 @@ module mech9_study_grammar
     item_row_type('study', 'classes', 'logical', 1, 1, '', optional, '.false.', '', '', '', &
                   'a column class: the number of what each motion goes to, of a position of rest or a periodic motion', '.true.', &
                   seldom=.true., program=dynamics), &
+    item_row_type('study', 'exponents', 'integer', 1, 1, '', optional, '0', '>=0', '', '', &
+                  'so many Lyapunov exponents of each motion, with standard errors, over the times of &exponents', '1', &
+                  seldom=.true., program=dynamics), &
     item_row_type('objective', 'kind', 'text', 1, 1, '', needed, '', '', 'path function pose quantity', '', &
                   'a point follows a path, a coordinate a function, a link goes through poses, or a quantity has a value', &
                   '''path'''), &

@@ -14,6 +14,7 @@ module mech9_study
     integer :: seed = 1                        !< chooses the numbers of random, latin and sobol
     real(wp), allocatable :: list(:, :)        !< (parameters,runs) the values of a list, in the units of the file
     logical :: classes = .false.               !< runs are told apart by what their motions go to
+    integer :: exponents = 0                   !< how many Lyapunov exponents of each motion are found
     type(place_type) :: place                  !< of its group in the data file
   contains
     procedure :: set_of

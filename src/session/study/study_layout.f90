@@ -62,6 +62,8 @@ contains
         layout%quantities(i)%text = requested(i)%name
         layout%units(i)%text = quantities%unit_of(i)
         layout%meanings(i)%text = trim(requested(i)%take)//' of '//requested(i)%column
+        if (requested(i)%take == 'exponent') layout%meanings(i)%text = 'Lyapunov exponent, largest first'
+        if (requested(i)%take == 'error') layout%meanings(i)%text = 'standard error of an exponent'
         if (requested(i)%take == 'class') layout%meanings(i)%text = 'class of what the motion goes to'
       end do
     end associate

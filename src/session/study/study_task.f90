@@ -203,8 +203,8 @@ contains
     if (allocated(err)) kept = err%code == exit_interrupted
     clock = seconds() - clock
     allocate (propagation(0))
-    if (.not. (allocated(err) .or. model%request%study%classes) .and. runs%statistics%drawn .and. runs%sums%done > 0 .and. &
-        .not. (quiet .and. .not. options%has('report'))) then
+    if (.not. (allocated(err) .or. model%request%study%classes .or. model%request%study%exponents > 0) .and. &
+        runs%statistics%drawn .and. runs%sums%done > 0 .and. .not. (quiet .and. .not. options%has('report'))) then
       call interruption%words%start(model%program, 'no derivatives at the means yet', 'their run', quiet, with_progress=.false.)
       call propagate(model, varied, interruption, propagation, without_shares)
     end if
