@@ -21,6 +21,7 @@ typedef struct mech9_error mech9_error;
 typedef struct mech9_mechanism mech9_mechanism;
 typedef struct mech9_results mech9_results;
 typedef struct mech9_positions mech9_positions;
+typedef struct mech9_equations mech9_equations;
 typedef struct mech9_simulation mech9_simulation;
 typedef struct mech9_motion mech9_motion;
 typedef struct mech9_loads mech9_loads;
@@ -213,6 +214,24 @@ int mech9_positions_independent_at(const mech9_positions *positions, int i);    
 int mech9_positions_find(mech9_positions *positions, int n, const double *values, const double *rates,
                          const double *accelerations, const volatile int *stop, double *q, double *dq, double *ddq, int *codes,
                          mech9_error *error);
+
+/* Equations of motion as a function of state, parameters and time, for other programs that integrate them or follow their solutions:
+ * x' = f(x, p, t). The state has the free coordinates, then their rates, in SI units. The parameters are those of the groups &parameter,
+ * in the units of the data file. `q` has all coordinates of a closed position [rad, m], or is null for the assembled start. Closed
+ * chains follow the state from call to call. With a clock the state ends with cosine and sine of the phase of all drives and loads, in
+ * place of the time. Refused are friction, contacts, rigid stops, and motors with states. */
+int mech9_equations_create(const mech9_mechanism *mechanism, const double *q, int with_clock, mech9_equations **equations,
+                           mech9_error *error);
+void mech9_equations_destroy(mech9_equations *equations);
+int mech9_equations_states(const mech9_equations *equations);
+int mech9_equations_parameters(const mech9_equations *equations);
+const char *mech9_equations_name(mech9_equations *equations, int i);      /* of the states, then of the parameters */
+const char *mech9_equations_unit(mech9_equations *equations, int i);
+int mech9_equations_start(const mech9_equations *equations, double *x, double *parameters, mech9_error *error);
+/* Derivatives by_state[states][states] and by_parameters[states][parameters], a row for each rate; null leaves one out. Those by the
+ * clock come from differences in time, to about 1e-10; all others are exact. */
+int mech9_equations_find(mech9_equations *equations, double t, const double *x, const double *parameters, double *f,
+                         double *by_state, double *by_parameters, mech9_error *error);
 
 /* A motion that the caller advances; `stop` must outlive it. with_forces 0: driven, as by mech9k; else under forces, as by
  * mech9d. */

@@ -11,6 +11,7 @@ Numbers are in the units of the data file. Names of groups, words and numbers ar
 """
 from ._errors import (AssemblyError, DataError, Error, FileError, Finding, IntegrationError, SingularError, StructureError,
                       UsageError)
+from ._equations import Equations
 from ._function import Function
 from ._library import version as _version
 from ._mechanism import Check, Mechanism, Optimum, Positions, import_robot, read, read_text
@@ -19,7 +20,7 @@ from ._procedures import Loads, Motion
 from ._results import Branches, Exponents, Gradients, Linear, LinearMotion, Matrix, Periodic, Results, Section
 from ._simulation import Simulation, Simulations
 
-__all__ = ['read', 'read_text', 'import_robot', 'Mechanism', 'Results', 'Section', 'Gradients', 'Positions', 'Check', 'Linear', 'LinearMotion', 'Exponents', 'Periodic', 'Branches', 'Optimum', 'Matrix', 'Picture', 'Function',
+__all__ = ['read', 'read_text', 'import_robot', 'Mechanism', 'Results', 'Section', 'Gradients', 'Positions', 'Check', 'Linear', 'LinearMotion', 'Exponents', 'Periodic', 'Branches', 'Optimum', 'Matrix', 'Picture', 'Function', 'Equations',
            'Simulation', 'Simulations', 'Motion', 'Loads', 'Error', 'Finding',
            'UsageError', 'DataError', 'StructureError', 'AssemblyError', 'SingularError', 'IntegrationError', 'FileError']
 __version__ = _version()

@@ -16,11 +16,13 @@ from ._errors import DataError, Error, UsageError
 from ._library import Handle, call, call_stoppable, count, lib, warn_of_raised
 from ._library import text as text_of
 from ._pictures import Picture, drawn
+from ._positions import PositionFinder
 from ._procedures import Procedure, Progress
 from ._results import Branches, Exponents, Linear, LinearMotion, Periodic, Results, linear_at_rest, linear_motion, multipliers_of
 from ._words import group, run_setting, written
 
 if TYPE_CHECKING:
+    from ._equations import Equations
     from ._function import Function
     from ._simulation import Simulation, Simulations
 
@@ -514,7 +516,7 @@ class Mechanism:
         return self._positions(threads, q, dq, ddq)[2]
 
     def _positions(self, threads: int, *given: Any) -> list[Positions]:
-        first = _PositionFinder(self)
+        first = PositionFinder(self)
         arrays = [first.rows(values) for values in given]
         if any(array.shape != arrays[0].shape for array in arrays):
             raise UsageError('positions, rates and accelerations must have the same shape', 2)
@@ -523,7 +525,7 @@ class Mechanism:
         code = np.zeros(n, dtype=np.intc)
         threads = max(1, min(count(threads, 'threads', 1), n))
         bounds = [n*i//threads for i in range(threads + 1)]
-        finders = [first] + [_PositionFinder(self) for _ in range(threads - 1)]
+        finders = [first] + [PositionFinder(self) for _ in range(threads - 1)]
 
         def work(i: int) -> None:
             part = slice(bounds[i], bounds[i + 1])
@@ -550,6 +552,15 @@ class Mechanism:
         from ._function import Function
         return Function(self, inputs, outputs)
 
+    def equations(self, q: Any = None, *, clock: bool = False) -> Equations:
+        """The equations of motion as a function with exact derivatives, for other programs: f(x, p, t), f.jacobian(x, p, t).
+
+        q: all coordinates (M,) of a closed position [rad, m] at which closed chains begin; by default the assembled start. With
+        clock=True cosine and sine of the phase of all drives and loads are parts of the state, in place of the time.
+        """
+        from ._equations import Equations
+        return Equations(self, q, clock)
+
     def simulation(self, *, driven: bool = False, **words: Any) -> Simulation:
         """A motion that you advance step by step; it takes the words of &solver and &time."""
         from ._simulation import Simulation
@@ -567,36 +578,3 @@ def free_name(taken: tuple[str, ...], i: int) -> str:
     while name in taken:
         name += '_'
     return name
-
-
-class _PositionFinder:
-    """The assembled mechanism whose positions are found."""
-
-    def __init__(self, mechanism: Mechanism):
-        self.handle = Handle(procedures=mechanism._handle.procedures)
-        call(lib.positions_create, mechanism._handle, ctypes.byref(self.handle))
-        self.coordinates: int = lib.positions_coordinates(self.handle)
-        self.independent: int = lib.positions_independent(self.handle)
-
-    def __del__(self) -> None:
-        lib.positions_destroy(self.handle)
-
-    def rows(self, values: Any) -> np.ndarray:
-        """Values as an array (n, I)."""
-        array = np.ascontiguousarray(values, dtype=float)
-        if array.ndim < 2:
-            array = array.reshape(-1, 1) if self.independent == 1 else array.reshape(1, -1)
-        if array.ndim != 2 or array.shape[1] != self.independent:
-            raise UsageError(f'values of the independent coordinates must have the shape (n, {self.independent}), '
-                             f'not {np.shape(values)}', 2)
-        return array
-
-    def find(self, given: list[np.ndarray], found: list[np.ndarray], code: np.ndarray) -> None:
-        """Fill arrays: positions, and rates and accelerations where these are given."""
-        def address(arrays: list[np.ndarray], i: int) -> int | None:
-            return arrays[i].ctypes.data if i < len(arrays) else None
-        failure = call_stoppable(lib.positions_find, lambda stop: (
-            self.handle, len(code), address(given, 0), address(given, 1), address(given, 2), stop,
-            address(found, 0), address(found, 1), address(found, 2), code.ctypes.data))
-        if failure is not None:
-            raise failure

@@ -4,11 +4,11 @@ module mech9_api_handle
   implicit none
   private
   public :: is_live
-  public :: error_mark, mechanism_mark, results_mark, positions_mark, simulation_mark, no_mark
+  public :: error_mark, mechanism_mark, results_mark, positions_mark, simulation_mark, equations_mark, no_mark
 
   !> Marks of the kinds of handles; a destroyed one has none.
   integer(c_int), parameter :: no_mark = 0, error_mark = 901, mechanism_mark = 902, results_mark = 903, positions_mark = 904, &
-    simulation_mark = 905
+    simulation_mark = 905, equations_mark = 906
 
 contains
 

@@ -28,14 +28,15 @@ module mech9
   use mech9_recorded_cam, only: find_cam
   use mech9_recorded_optimum, only: optimum_type => recorded_optimum_type
   use mech9_followed_positions, only: positions_type => followed_positions_type
+  use mech9_motion_equations, only: equations_type => motion_equations_type
   use mech9_drawn_mechanism, only: draw_sketch, draw_film
   use mech9_structure_answers, only: judge_mobility, list_assemblies, list_ranges, name_coordinates, report_parts
   implicit none
   private
   public :: wp, kinematics, dynamics, string_type
   public :: mechanism_type, finding_type, read_file, read_text, parse_file, parse_text, design_type
-  public :: motion_type, run_type, study_type, rest_type, optimum_type, positions_type, linear_system_type, linear_along_type, &
-    exponents_found_type
+  public :: motion_type, run_type, study_type, rest_type, optimum_type, positions_type, equations_type, linear_system_type, &
+    linear_along_type, exponents_found_type
   public :: motion_view_type, force_sum_type
   public :: interruption_type, simulation_statistics_type, coordinate_change_type, motion_event_type
   public :: judge_mobility, list_assemblies, list_ranges, name_coordinates, report_parts, find_linear_system, find_linear_along, &

@@ -85,7 +85,8 @@ int main(void)
   mech9_mechanism *mechanism = NULL, *copy = NULL;
   mech9_results *results = NULL;
   mech9_positions *positions = NULL;
-  double value = 0, q[4], point[3] = {0, 0, 0};
+  mech9_equations *equations = NULL;
+  double value = 0, q[4], point[3] = {0, 0, 0}, state[2], rates[2];
   int stop = 1, codes[1];
   expect(mech9_kinematics(NULL, NULL, &results, error) == 2 && results == NULL, "no mechanism");
   expect(strstr(mech9_error_message(error), "this is no mechanism") != NULL, "no mechanism is told");
@@ -155,6 +156,20 @@ int main(void)
   expect(mech9_positions_find(positions, 1, NULL, NULL, NULL, NULL, q, NULL, NULL, codes, error) == 2, "need values");
   expect(mech9_positions_find(positions, 0, &value, NULL, NULL, NULL, q, NULL, NULL, codes, error) == 0, "there may be none");
   mech9_positions_destroy(positions);
+  expect(mech9_equations_create(mechanism, NULL, 0, &equations, error) == 3 && equations == NULL, "no equations where all is driven");
+  expect(mech9_equations_create(NULL, NULL, 0, &equations, error) == 2 && mech9_equations_states(NULL) == 0, "of no mechanism");
+  expect(mech9_mechanism_remove(copy, "drive", error) == 0 && mech9_mechanism_add(copy, "&body link=3, mass=2, centre=0.2,0,0 /"
+         " &parameter name='g', sets='body(1).mass', value=2 / &initial coordinate=1, position=1 /", error) == 0, "a free mechanism");
+  expect(mech9_equations_create(copy, NULL, 0, &equations, error) == 0 && mech9_equations_states(equations) == 2, "equations");
+  expect(mech9_equations_parameters(equations) == 1 && strcmp(mech9_equations_name(equations, 2), "g") == 0, "with a parameter");
+  expect(strcmp(mech9_equations_unit(equations, 1), "rad/s") == 0 && mech9_equations_name(equations, 3) == NULL, "and units");
+  expect(mech9_equations_start(equations, state, &value, error) == 0 && state[0] == 1 && value == 2, "their start");
+  expect(mech9_equations_find(equations, 0, state, &value, rates, NULL, NULL, error) == 0 && rates[0] == state[1], "the rates");
+  expect(mech9_equations_find(equations, 0, state, &value, rates, q, point, error) == 0 && q[0] == 0 && q[1] == 1 && point[0] == 0,
+         "and their derivatives, row by row");
+  expect(mech9_equations_find(equations, 0, NULL, &value, rates, NULL, NULL, error) == 2, "of no state");
+  mech9_equations_destroy(equations);
+  mech9_equations_destroy(NULL);
   mech9_mechanism_destroy(copy);
   mech9_mechanism_destroy(mechanism);
   mech9_mechanism_destroy(NULL);
