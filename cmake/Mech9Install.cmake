@@ -32,8 +32,10 @@ set(link_modules "\$here/${prefix_from_bin}${modules_dir}")
 set(link_library "\$here/${prefix_from_bin}${CMAKE_INSTALL_LIBDIR}/libmech9.a")
 set(link_programs "\$here/${prefix_from_bin}${MECH9_INSTALL_PROGRAMS}")
 configure_file(cmake/mech9-link.in install/mech9-link @ONLY)
+configure_file(cmake/mech9-link.1.in pages/mech9-link.1 @ONLY)
 
 install(PROGRAMS "${PROJECT_BINARY_DIR}/install/mech9-link" DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT development)
+install(FILES "${PROJECT_BINARY_DIR}/pages/mech9-link.1" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" COMPONENT development)
 foreach(program mech9k mech9d)
   if(TARGET ${program})
     install(TARGETS ${program} DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT programs)
@@ -46,7 +48,8 @@ foreach(program mech9k mech9d)
       DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" RENAME ${program} COMPONENT programs)
   endif()
 endforeach()
-install(FILES "${MECH9_PROGRAMS_DIR}/memory_guard.f90" DESTINATION "${MECH9_INSTALL_PROGRAMS}" COMPONENT development)
+install(FILES "${MECH9_PROGRAMS_DIR}/memory_guard.f90" "${MECH9_PROGRAMS_DIR}/mech9_auto.f90"
+  DESTINATION "${MECH9_INSTALL_PROGRAMS}" COMPONENT development)
 install(TARGETS mech9 EXPORT mech9Targets DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT development)
 # .smod: users' submodules need those of their hooks
 install(DIRECTORY "${MECH9_MODULES_DIR}/" DESTINATION "${modules_dir}" COMPONENT development

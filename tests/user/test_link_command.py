@@ -1,5 +1,6 @@
 """mech9-link, of the build tree and installed: several procedures in one program, and clear words on what is wrong with a call."""
 import os
+import re
 import shutil
 
 import pytest
@@ -90,3 +91,14 @@ def test_debug(checks, link, tmp_path):
     expect(checks, 0, 'with your user_force)', command, '--debug', '-o', tmp_path / 'beyond', source)
     expect(checks, 0, '', tmp_path / 'beyond_d', '--no-write', tmp_path / 'beyond.nml')
     expect(checks, 2, "'state%dq' above upper bound", tmp_path / 'beyond_d', '--no-write', tmp_path / 'beyond.nml', '--set', 'user.parameters=1,9')
+
+
+def test_manual_page(checks, build):
+    """The manual page has the words of --help that begin options, and no faults of markup."""
+    page = text_of(os.path.join(build.folder, 'pages', 'mech9-link.1')).replace('\\-', '-')
+    said = run(build.program('mech9-link'), '--help').stdout
+    for word in re.findall(r'(?<![\w-])--?[A-Za-z][\w-]*', said):
+        checks.true(word in page, f'the page has {word}')
+    if shutil.which('groff'):
+        done = run('groff', '-man', '-ww', '-Tascii', os.path.join(build.folder, 'pages', 'mech9-link.1'))
+        checks.equal(done.stderr, '', 'markup without warnings')

@@ -27,7 +27,7 @@ module mech9_branches
   use mech9_periodic_curve, only: periodic_curve_type, begin_periodic_curve
   implicit none
   private
-  public :: branches_found_type, find_branches, columns_of_branches
+  public :: branches_found_type, find_branches, columns_of_branches, first_request, begin_at_rest
 
   !> The branches of one or more groups &branch over the same parameter.
   type :: branches_found_type
@@ -86,6 +86,27 @@ contains
     if (allocated(self%branches)) number = size(self%branches)
   end function count_branches
 
+  !> The first group &branch of a data file, complete. Motions with a period of their own count, too. Fails with exit_data where there is
+  !> none, and as find_branches does.
+  subroutine first_request(model, request, number, err)
+    type(model_type), intent(in) :: model                     !< the model
+    type(branch_request_type), intent(out) :: request         !< the group
+    integer, intent(out) :: number                            !< of its parameter
+    type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
+
+    number = 0
+    if (allocated(model%request%branches)) then
+      if (size(model%request%branches) > 0) request = model%request%branches(1)
+    end if
+    if (.not. allocated(request%parameter)) then
+      call raise(err, exit_data, 'the data file has no group &branch, which names the parameter to follow; add one, such as '// &
+                 '&branch parameter=''F'', low=0, high=1 /')
+      return
+    end if
+    call find_parameter(model, request%parameter, number, err)
+    if (.not. allocated(err)) call complete_request(model, model%parameters(number), request, err, own_period=.true.)
+  end subroutine first_request
+
   !> The number of a parameter.
   subroutine find_parameter(model, name, number, err)
     type(model_type), intent(in) :: model               !< the model
@@ -140,11 +161,12 @@ contains
 
   !> Complete what is asked for by the range of the parameter and by the kind of the coordinates. Fails where there is no range, or
   !> where such branches are not known.
-  subroutine complete_request(model, parameter, request, err)
+  subroutine complete_request(model, parameter, request, err, own_period)
     type(model_type), intent(in) :: model                     !< the model
     type(parameter_type), intent(in) :: parameter             !< the parameter
     type(branch_request_type), intent(inout) :: request       !< the group
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
+    logical, intent(in), optional :: own_period               !< motions may have a period of their own; not unless given
     type(law_period_type) :: laws
     logical :: any_free
 
@@ -173,6 +195,7 @@ contains
       call refuse_parts(model, err)
     else if (request%of == 'periodic') then
       call find_law_period(model, laws, err)
+      if (present(own_period)) return
       if (.not. (allocated(err) .or. laws%follows_time)) &
         call raise(err, exit_data, 'no drive, load or motor follows time, and branches of periodic motions with a period of '// &
                    'their own are not known; --periodic finds single ones', request%place)
@@ -311,7 +334,6 @@ contains
     type(rest_type), allocatable :: rest
     type(plan_type) :: first_plan, plan
     type(state_type) :: first_start, state
-    logical :: on_stops
 
     if (request%of == 'position') then
       call assemble_model(model, first_plan, first_start, err)
@@ -323,24 +345,34 @@ contains
       return
     end if
     allocate (rest)
-    call rest%assemble(model, err)
-    if (allocated(err)) return
-    call rest%find(model, 0, .false., err)
-    if (allocated(err)) call add_place(err, place=request%place)
+    call begin_at_rest(model, request, rest, err)
     if (allocated(err)) return
     associate (resting => rest%equilibria(1)%resting)
-      on_stops = count(resting%partition%kind == driven_coordinate) > count(model%problem%partition%kind == driven_coordinate)
-      if (on_stops) then
-        call raise(err, exit_data, 'the start rests against a stop, and a branch begins at a position of rest without one; '// &
-                   'give another initial position or another value of the parameter', request%place)
-        return
-      end if
       call new_position_curve(single, model, rest%plan, resting%state, .true., request%high - request%low, curve)
       curve%partition = resting%partition
       call begin_curve(curve, resting%state%q, value, start, err)
     end associate
     if (allocated(err)) call add_place(err, place=request%place)
   end subroutine begin
+
+  !> Find the position of rest at which branches begin. Fails where there is none, or where it rests against a stop.
+  subroutine begin_at_rest(model, request, rest, err)
+    type(model_type), intent(in) :: model                        !< the model
+    type(branch_request_type), intent(in) :: request             !< the group
+    type(rest_type), intent(inout) :: rest                       !< gets the position
+    type(error_type), allocatable, intent(out) :: err            !< allocated if it failed
+
+    call rest%assemble(model, err)
+    if (allocated(err)) return
+    call rest%find(model, 0, .false., err)
+    if (allocated(err)) then
+      call add_place(err, place=request%place)
+    else if (count(rest%equilibria(1)%resting%partition%kind == driven_coordinate) > &
+             count(model%problem%partition%kind == driven_coordinate)) then
+      call raise(err, exit_data, 'the start rests against a stop, and a branch begins at a position of rest without one; '// &
+                 'give another initial position or another value of the parameter', request%place)
+    end if
+  end subroutine begin_at_rest
 
   !> Put the points of branches into rows of the table.
   subroutine put_rows(model, last, range, unit, branches, before, found)

@@ -1,0 +1,37 @@
+!> Writing of the files for AUTO-07p, a part of mech9-link --auto: its arguments are the data file, the
+!> folder and the name of the files, and `one` where FUNC must not be called by two threads at once.
+program mech9_auto
+  use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+  use mech9, only: mechanism_type, error_type, read_file
+  use mech9_auto_files, only: write_auto_files
+  use mech9_system, only: exit_program
+  implicit none
+  type(mechanism_type) :: mechanism
+  type(error_type), allocatable :: err
+  character(len=:), allocatable :: path, folder, name, threads, files
+
+  call take_argument(1, path)
+  call take_argument(2, folder)
+  call take_argument(3, name)
+  call take_argument(4, threads)
+  call read_file(path, mechanism, err)
+  if (.not. allocated(err)) call write_auto_files(mechanism, path, folder, name, threads /= 'one', files, err)
+  if (allocated(err)) then
+    write (error_unit, '(a)') err%message
+    call exit_program(err%code)
+  end if
+  write (output_unit, '(a)') files
+
+contains
+
+  !> Take an argument of the command line.
+  subroutine take_argument(i, text)
+    integer, intent(in) :: i                             !< its number
+    character(len=:), allocatable, intent(out) :: text   !< the argument
+    integer :: length
+
+    call get_command_argument(i, length=length)
+    allocate (character(len=length) :: text)
+    call get_command_argument(i, text)
+  end subroutine take_argument
+end program mech9_auto
