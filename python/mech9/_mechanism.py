@@ -376,8 +376,7 @@ class Mechanism:
                 call(lib.mechanism_apply, moved._handle, text_of(f'exponents.{word}={written(value)}'))
         found = moved._results(lib.exponents, lambda m, stop, out: (m, count(how_many, 'how_many', 1), stop, out))
         numbers = np.array(list(found.quantities.values()))
-        values, errors, changes = numbers[:-1].reshape(3, how_many)
-        return Exponents(values, errors, found.t, found.table[:, 1:], changes, float(numbers[-1]))
+        return Exponents(*numbers[:-1].reshape(3, -1), found.t, found.table[:, 1:], float(numbers[-1]))
 
     def periodic(self, **words: Any) -> Periodic:
         """A periodic motion under forces, stable or not, near the start. It takes the words of &periodic, as period=9.42 and starts=20, and
@@ -407,7 +406,6 @@ class Mechanism:
 
         Several lists of values have the same length. The answer is an xarray.Dataset over `run`, with parameters, quantities and
         exit codes, and with the points of a &section as `section.q1` and so on over `section_point`; without xarray it is Results.
-        With exponents=K in &study, quantities are `L1`, ... and `L1.error`, ..., the Lyapunov exponents of each run.
         carry: 'forwards', 'backwards' or 'both' begin each run where the one before ended. dynamics: whether forces move the mechanism; by default where a coordinate has no drive.
         progress as for kinematics. A warning tells what a procedure raised that made runs fail.
         """

@@ -385,9 +385,9 @@ class Exponents:
     the sum of all exponents agrees; NaN where not all were asked for."""
     values: np.ndarray
     errors: np.ndarray
+    changes: np.ndarray
     t: np.ndarray
     history: np.ndarray
-    changes: np.ndarray
     divergence: float
 
 
