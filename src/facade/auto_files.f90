@@ -28,9 +28,12 @@ module mech9_auto_files
   !> Times in a period at which the start is given.
   integer, parameter :: times_of_period = 400
   !> Geometric mean of the ranges that parameters have in AUTO.
-  real(wp), parameter :: usual_range = 2.0_wp
-  !> Part of the longest step of &branch by which AUTO goes on: it has to find folds from one step to the next one.
-  real(wp), parameter :: part_of_step = 0.4_wp
+  real(wp), parameter :: usual_range = 6.0_wp
+  !> States count in tenths of a radian or of the mechanism's size. Parameters then change little from step to step, beside the states,
+  !> where a branch folds: AUTO sees a fold only where directions of the branch turn by less than a right angle in a step.
+  integer, parameter :: power_of_states = -1
+  !> Longest step of AUTO in these units, per longest step of &branch.
+  real(wp), parameter :: part_of_step = 4.0_wp
   real(wp), parameter :: turn = 8.0_wp*atan(1.0_wp)
   !> Number in AUTO of the period.
   integer, parameter :: number_of_period = 11
@@ -122,17 +125,21 @@ contains
     type(start_type), intent(inout) :: start                       !< the start; gets state and units
     type(motion_equations_type), intent(inout) :: equations        !< begun at the start
     type(error_type), allocatable, intent(out) :: err              !< allocated if it failed
-    real(wp), allocatable :: unused(:)
+    real(wp), allocatable :: values(:), f(:), by_state(:, :), by_parameters(:, :)
 
     call equations%begin(mechanism, err, start%q, start%has_clock)
     if (allocated(err)) return
+    call equations%start(start%x, values)
     if (start%is_periodic) then
       start%x = start%states(:, 1)
     else
-      call equations%start(start%x, unused)
       start%x(size(start%x)/2 + 1:) = 0.0_wp
     end if
     call choose_units(model, equations, start)
+    ! AUTO shall not meet what fails everywhere: no inertia, unknown derivatives
+    f = start%x
+    allocate (by_state(size(f), size(f)), by_parameters(size(f), size(values)))
+    call equations%find(start%x, values, f, err, by_state, by_parameters)
   end subroutine begin_equations
 
   !> Choose powers of ten as units, in which states and parameters have numbers near 1: the test functions of AUTO compare directions of a
@@ -148,7 +155,8 @@ contains
     call equations%take_units(sizes)
     n = size(sizes)/2 - merge(1, 0, start%has_clock)
     if (start%is_periodic) sizes(n + 1:2*n) = sizes(n + 1:2*n)*(turn/start%period)
-    start%power = nint(log10(sizes))
+    start%power = nint(log10(sizes)) + power_of_states
+    if (start%has_clock) start%power(2*n + 1:) = 0
     allocate (start%parameter_power(size(model%parameters)), source=0)
     do i = 1, size(model%parameters)
       associate (parameter => model%parameters(i))
@@ -470,7 +478,7 @@ contains
            'NMX='//to_text(2*start%request%points)//', NPR='//to_text(2*start%request%points)// &
            ', MXBF=10, IID=2, ITMX=20, ITNW=7, NWTN=5, JAC=1'//eol// &
            trim(merge('EPSL=1e-08, EPSU=1e-08, EPSS=1e-06', 'EPSL=1e-10, EPSU=1e-10, EPSS=1e-08', start%is_periodic))//eol// &
-           'DS='//trim(exact(0.1_wp*start%request%step))//', DSMIN=1e-07, DSMAX='// &
+           'DS='//trim(exact(0.2_wp*part_of_step*start%request%step))//', DSMIN=1e-07, DSMAX='// &
            trim(exact(part_of_step*start%request%step))//', IADS=1'//eol// &
            'THL={'//weights//'}, THU={}'//eol// &
            'UZSTOP={'//p//': ['//trim(exact(start%request%low/unit))//', '//trim(exact(start%request%high/unit))//']}'//eol
