@@ -10,8 +10,7 @@ module mech9_dynamic_report
   use mech9_named_words, only: with_names
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
-  use mech9_law_notes, only: print_jumps
-  use mech9_effect_notes, only: print_effects
+  use mech9_check_notes, only: print_run_notes
   use mech9_model_motion, only: model_motion_type
   use mech9_run_outcome, only: run_outcome_type
   use mech9_integrator, only: integration_statistics_type
@@ -74,8 +73,7 @@ contains
         with_names(simulation%model%mechanism%names, change_words(simulation%coordinate_changes, i))
     end do
     call print_events(unit, with_impulses_in_units(simulation%events, simulation%model%mechanism))
-    call print_jumps(unit, simulation%model)
-    call print_effects(unit, simulation%model, .true.)
+    call print_run_notes(unit, simulation%model, .true.)
     if (table_path /= '' .and. table_path /= '-') write (unit, '(2a)') 'table: ', table_path
   end subroutine print_report
 

@@ -9,8 +9,7 @@ module mech9_kinematic_report
   use mech9_driven_motion, only: driven_motion_type
   use mech9_named_words, only: with_names
   use mech9_block_names, only: words_of_block
-  use mech9_law_notes, only: print_jumps
-  use mech9_effect_notes, only: print_effects
+  use mech9_check_notes, only: print_run_notes
   use mech9_friction_text, only: print_rest
   use mech9_driven_simulation, only: driven_simulation_type
   use mech9_model_motion, only: model_motion_type
@@ -70,8 +69,7 @@ contains
     end do
     if (calls > 0) write (unit, '(a)') 'user pairs in plain values: '//to_text(calls)// &
       ' calls or more for each evaluation; in Taylor arithmetic it would be one a pair'
-    call print_jumps(unit, model)
-    call print_effects(unit, model, model%program == dynamics .or. model%request%output%with_forces())
+    call print_run_notes(unit, model, model%program == dynamics .or. model%request%output%with_forces())
     if (table_path /= '' .and. table_path /= '-') write (unit, '(2a)') 'table: ', table_path
   end subroutine print_motion
 

@@ -258,6 +258,26 @@ def test_body_of_the_frame(s):
         s.checks.true(words in printed, f'says {words}', printed)
 
 
+MADE_LARGE = re.sub(r'point=([\d.]+),0,0', lambda at: f'point={100*float(at.group(1))!r},0,0', FOUR_BAR)
+
+
+@pytest.mark.parametrize('text, words', [
+    (MADE_LARGE, "note: the longest link has 100 m between two pairs; where millimetres are meant, give &mechanism length_unit='mm'"),
+    ("&mechanism length_unit='mm' /\n" + MADE_LARGE, None),
+    ("&mechanism angle_unit='deg' /\n" + FOUR_BAR.replace('coefficients=0, 6.5', 'coefficients=0, 6.28'),
+     'note: the drive of coordinate 1 has the rate 6.28 degrees a second'),
+    (FOUR_BAR + '&body link=1, mass=1 /\n&output drive_forces=.true. /\n', 'note: link 1 is the frame, which does not move: its &body has no effect'),
+    (FOUR_BAR, None)], ids=('metres', 'millimetres', 'radians', 'frame', 'none'))
+def test_notes_of_a_run(s, text, words):
+    """A run tells the notes that a check does, once, but for links without mass."""
+    s.check(s.mech9k, text)
+    for options in ((), ('--quiet',)):
+        done = run(s.mech9k, os.path.join(s.folder, 'case.nml'), '--no-write', *options, folder=s.folder)
+        s.checks.equal(done.returncode, DONE, done.stderr)
+        told = 0 if options or words is None else 1
+        s.checks.equal(done.stderr.count(words or 'note: '), told, f'{options}: {words}')
+
+
 @pytest.mark.parametrize('a, b', [(1.0, 1.5), (1.0, 1.2)])
 def test_overconstrained_chain_is_not_idle(s, a, b):
     """A whole chain that moves although it is overconstrained is not idle: no two links at its ends stand still."""

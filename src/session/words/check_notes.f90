@@ -16,7 +16,7 @@ module mech9_check_notes
   use mech9_link_dimensions, only: link_dimension_type, link_dimensions
   implicit none
   private
-  public :: print_notes
+  public :: print_notes, print_run_notes
 
   !> Most numbers that a list shows.
   integer, parameter :: longest_list = 24
@@ -24,7 +24,6 @@ module mech9_check_notes
   real(wp), parameter :: fast = 45.0_wp, whole = 15.0_wp
   !> An angle or a rate in degrees may have a number that is so near, relatively, to that of a few quarters of a turn in radians.
   !> It was probably meant in radians: pi is often rounded to 3.14.
-!> meant in radians: pi is often rounded to 3.14.
   real(wp), parameter :: rounded_pi = 1.0e-3_wp
   integer, parameter :: most_quarters = 8
   !> Links of this length [m] were probably meant in millimetres.
@@ -32,11 +31,21 @@ module mech9_check_notes
 
 contains
 
-  !> Write a line for each note.
+  !> Write a line for each note of a check: those of a run, and links without mass.
   subroutine print_notes(unit, model, with_masses)
-    integer, intent(in) :: unit                    !< Fortran unit to write to
-    type(model_type), intent(in) :: model      !< the model
-    logical, intent(in) :: with_masses  !< with notes for mech9d, on bodies and initial velocities
+    integer, intent(in) :: unit            !< Fortran unit to write to
+    type(model_type), intent(in) :: model  !< the model
+    logical, intent(in) :: with_masses     !< with notes for mech9d, on bodies and initial velocities
+
+    call print_run_notes(unit, model, with_masses)
+    if (with_masses) call note_massless(unit, model%mechanism)
+  end subroutine print_notes
+
+  !> Write a line for each note on data that are allowed but often mistakes.
+  subroutine print_run_notes(unit, model, with_masses)
+    integer, intent(in) :: unit            !< Fortran unit to write to
+    type(model_type), intent(in) :: model  !< the model
+    logical, intent(in) :: with_masses     !< with notes on bodies, loads and initial velocities
     type(error_type), allocatable :: err
     real(wp) :: q, dq, ddq
     integer :: i, k
@@ -47,7 +56,7 @@ contains
           call note_angle(unit, model%mechanism, k, 'the start', model%problem%initial%position(k), &
                           model%problem%initial%velocity(k))
       end do
-      call note_bodies(unit, model%mechanism)
+      if (any(model%mechanism%bodies%link == 1)) call note_frame(unit, model%mechanism)
     end if
     do i = 1, size(model%problem%drives)
       k = model%problem%drives(i)%drive%coordinate
@@ -66,7 +75,7 @@ contains
     call print_jumps(unit, model)
     call print_effects(unit, model, with_masses)
     call note_size(unit, model%mechanism)
-  end subroutine print_notes
+  end subroutine print_run_notes
 
   !> Note dimensions in metres that are as large as if millimetres were meant, where the file names no unit of lengths.
   subroutine note_size(unit, mechanism)
@@ -149,10 +158,21 @@ contains
     is_of_quarters = abs(quarters - anint(quarters)) <= rounded_pi*abs(quarters)
   end function is_of_quarters
 
-  !> Note a body of the frame, and links without mass beside links with mass.
-  subroutine note_bodies(unit, mechanism)
+  !> Note a body of the frame.
+  subroutine note_frame(unit, mechanism)
     integer, intent(in) :: unit                    !< Fortran unit to write to
-    type(mechanism_type), intent(in) :: mechanism      !< the mechanism
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism, with a body of link 1
+    integer :: i
+
+    i = findloc(mechanism%bodies%link, 1, dim=1)
+    if (mechanism%bodies(i)%has_inertia()) &
+      write (unit, '(a)') 'note: link 1 is the frame, which does not move: its &body has no effect'
+  end subroutine note_frame
+
+  !> Note links without mass beside links with mass.
+  subroutine note_massless(unit, mechanism)
+    integer, intent(in) :: unit                    !< Fortran unit to write to
+    type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(link_dimension_type), allocatable :: dimensions(:)
     logical :: massless(mechanism%structure%n_links)
     integer :: i
@@ -161,7 +181,6 @@ contains
     do i = 1, size(mechanism%bodies)
       if (mechanism%bodies(i)%has_inertia()) massless(mechanism%bodies(i)%link) = .false.
     end do
-    if (.not. massless(1)) write (unit, '(a)') 'note: link 1 is the frame, which does not move: its &body has no effect'
     massless(1) = .false.
     massless(mechanism%structure%shown_links() + 1:) = .false.
     if (count(massless) == mechanism%structure%shown_links() - 1) return
@@ -175,5 +194,5 @@ contains
     if (any(massless)) write (unit, '(a)') 'note: '//trim(merge('links', 'link ', count(massless) > 1))//' '// &
       named_list(mechanism%names%links, numbers_of(massless), longest_list)// &
       trim(merge(' have', ' has ', count(massless) > 1))//' no mass, while others have; give a &body where this is a mistake'
-  end subroutine note_bodies
+  end subroutine note_massless
 end module mech9_check_notes
