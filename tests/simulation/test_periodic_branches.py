@@ -147,3 +147,95 @@ def test_driven_pendulum(checks, mech9d, tmp_path):
 def test_refusals(checks, mech9d, tmp_path, text, name, code, words):
     _, _, said = follow(mech9d, tmp_path, text, name, code)
     checks.true(words in said, words, said)
+
+
+# a slider of 1 kg on a spring, with friction that falls with speed at first, a second one of 0.4 kg on it by spring and damper
+COUPLED = """&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&pair coordinate=2, links=2,3, kind='prismatic', axis=1,0,0 /
+&initial coordinate=1, position=-1.3, velocity=-0.06 /
+&initial coordinate=2, position=2.9, velocity=-1.9 /
+&body link=2, mass=1 /
+&body link=3, mass=0.4 /
+&load kind='coordinate', coordinate=1, stiffness=1 /
+&load kind='coordinate', coordinate=1, force=1, law='polynomial', coefficients=0,0.3,0,-0.1, over='dq1' /
+&load kind='coordinate', coordinate=2, stiffness=0.5, damping=0.1 /
+&load kind='coordinate', coordinate=1, force=1, law='harmonic', amplitude=1, angular_frequency=1.4 /
+&parameter name='f', sets='load(4).force', value=1, low=0.3, high=1.2 /
+&branch parameter='f', of='periodic' /
+&time end=1 /
+"""
+PERIOD = 2*np.pi/1.4
+
+
+def coupled(state, f, steps):
+    """The state after a period, and its derivatives by the state, by the method of Runge and Kutta."""
+    by_position = np.array([[-1.0, 0.5], [1.0, -1.75]])
+
+    def rates(t, x):
+        relative = 0.5*x[1] + 0.1*x[3]
+        first = -x[0] + 0.3*x[2] - 0.1*x[2]**3 + relative + f*np.sin(1.4*t)
+        return np.array([x[2], x[3], first, -2.5*relative - first])
+
+    def slopes(x):
+        falling = 0.3 - 0.3*x[2]**2
+        return np.block([[np.zeros((2, 2)), np.eye(2)], [by_position, np.array([[falling, 0.1], [-falling, -0.35]])]])
+
+    x, matrix, h = np.array(state, dtype=float), np.eye(4), PERIOD/steps
+    for i in range(steps):
+        t = i*h
+        a, of_a = rates(t, x), slopes(x) @ matrix
+        y = x + h/2*a
+        b, of_b = rates(t + h/2, y), slopes(y) @ (matrix + h/2*of_a)
+        y = x + h/2*b
+        c, of_c = rates(t + h/2, y), slopes(y) @ (matrix + h/2*of_b)
+        y = x + h*c
+        d, of_d = rates(t + h, y), slopes(y) @ (matrix + h*of_c)
+        x = x + h/6*(a + 2*b + 2*c + d)
+        matrix = matrix + h/6*(of_a + 2*of_b + 2*of_c + of_d)
+    return x, matrix
+
+
+def torus_point(steps):
+    """The force at which a pair of multipliers of the periodic motion leaves the unit circle, the start there, and the pair's angle: by
+    shooting and the secant method."""
+    x = np.array([-0.88, 1.97, -0.02, -1.32])
+
+    def excess(f):
+        nonlocal x
+        for _ in range(20):
+            end, matrix = coupled(x, f, steps)
+            change = np.linalg.solve(matrix - np.eye(4), end - x)
+            x = x - change
+            if np.abs(change).max() < 1e-11:
+                break
+        pair = max(np.linalg.eigvals(coupled(x, f, steps)[1]), key=lambda value: (abs(value), value.imag))
+        return abs(pair) - 1, np.angle(pair)
+
+    low, high = 0.5, 0.55
+    at_low, at_high = excess(low)[0], excess(high)[0]
+    while abs(high - low) > 1e-11:
+        low, high, at_low = high, high - at_high*(high - low)/(at_high - at_low), at_high
+        at_high, angle = excess(high)
+    return np.array([high, *x, angle])
+
+
+def test_torus(checks, mech9d, tmp_path):
+    """A self-excited oscillator under a strong force follows it; below a force a pair of multipliers leaves the unit circle, and the motion
+    winds about a torus (Neimark and Sacker)."""
+    rows, branches, said = follow(mech9d, tmp_path, COUPLED, 'f')
+    coarse, fine = torus_point(400), torus_point(800)
+    # errors of fourth order: Richardson's extrapolation leaves parts of 1e-10
+    exact = fine + (fine - coarse)/15
+    checks.true(np.abs(fine - coarse).max() < 1e-7, 'the reference converges', fine - coarse)
+    checks.true(1 < abs(exact[5]) < 3, 'the multipliers are far from 1 and -1', exact)
+    points = branches[0]['special_points']
+    checks.equal([point['kind'] for point in points], ['torus'], 'one special point')
+    checks.near(points[0]['value'], exact[0], 1e-9, 'the force', scale=1)
+    at = np.nonzero(rows['type'] == 5)[0]
+    checks.equal(len(at), 1, 'its row')
+    checks.near([rows['q1'][at[0]], rows['q2'][at[0]]], exact[1:3], 1e-8, 'the start of the motion', scale=1)
+    checks.near(rows['growth'][at[0]], 0, 1e-9, 'the growth there', scale=1)
+    checks.true((rows['growth'][rows['f'] < exact[0] - 1e-6] > 0).all() and (rows['growth'][rows['f'] > exact[0] + 1e-6] < 0).all(),
+                'unstable below, stable above', rows['growth'])
+    checks.true('torus at f = 0.5' in said, 'what is told', said)
