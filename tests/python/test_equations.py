@@ -163,6 +163,16 @@ def test_words(checks, mech9):
     checks.near(equations([0.1, 0.0]), exact(truss, [0.1, 0.0], [0.0], 0)[0], 1e-12, 'they go on after a failure', scale=100)
 
 
+def test_far_states(checks, mech9):
+    """A crank longer than the rod, in a state that is reached by both together: with the crank of the start the rod would be too short."""
+    equations = mech9.read_text(CRANK).equations()
+    for x, p in (([1.4, 0.5], [0.3]), ([0.3, -0.5], [0.7]), ([1.4, 0.5], [0.2])):
+        checks.near(equations(x, p), exact(crank, x, p, 0)[0], 1e-11, f'at {x}, {p}', scale=100)
+    with pytest.raises(mech9.AssemblyError):
+        equations([1.4, 0.0], [0.7])
+    checks.near(equations([0.3, 0.0], [0.6]), exact(crank, [0.3, 0.0], [0.6], 0)[0], 1e-11, 'they go on', scale=100)
+
+
 @pytest.mark.parametrize('group, words', (
     ("&friction coordinate=1, dynamic=0.2, radius=0.1 /", 'dry friction'),
     ("&stop coordinate=1, low=-1, restitution=0.5 /", 'rigid stop'),

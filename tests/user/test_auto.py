@@ -60,6 +60,23 @@ DRIVEN = """&structure cq=1 /
 &parameter name='g', sets='load(2).force', value=1.03 /
 &branch parameter='g', low=0.9, high=1.07, of='periodic' /
 """
+# a self-excited slider under a force, and a second one on it; in numpy a pair of multipliers leaves the unit circle at the force TORUS
+# (tests/simulation/test_periodic_branches.py)
+SLIDERS = """&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&pair coordinate=2, links=2,3, kind='prismatic', axis=1,0,0 /
+&initial coordinate=1, position=-1, velocity=-0.06 /
+&initial coordinate=2, position=2, velocity=-1.5 /
+&body link=2, mass=1 /
+&body link=3, mass=0.4 /
+&load kind='coordinate', coordinate=1, stiffness=1 /
+&load kind='coordinate', coordinate=1, force=1, law='polynomial', coefficients=0,0.3,0,-0.1, over='dq1' /
+&load kind='coordinate', coordinate=2, stiffness=0.5, damping=0.1 /
+&load kind='coordinate', coordinate=1, force=1, law='harmonic', amplitude=1, angular_frequency=1.4 /
+&parameter name='f', sets='load(4).force', value=0.6 /
+&branch parameter='f', low=0.4, high=0.7, of='periodic' /
+"""
+TORUS = 0.530989588
 FOUR_BAR = """&structure cq=4 /
 &pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
 &pair coordinate=2, links=2,3, kind='revolute', point=0.5,0,0, axis=0,0,1 /
@@ -192,6 +209,12 @@ tell(run('driven', SP=['PD1']), 'PD', 'g/1e-2')
 """)
     # tolerance: the collocation of AUTO, 50 intervals of fourth order
     checks.near(told(printed, 'PD')[:1], [100*DOUBLING], 1e-6, 'the period doubling', scale=1)
+
+
+def test_torus(checks, build, tmp_path):
+    """A pair of multipliers leaves the unit circle."""
+    printed, _ = follow(build, checks, tmp_path, SLIDERS, 'torus', "tell(run('torus', DS='-', SP=['TR1']), 'TR', 'f/1e-1')\n")
+    checks.near(told(printed, 'TR'), [10*TORUS], 2e-8, 'the torus', scale=1)
 
 
 def test_chart(checks, build, tmp_path):

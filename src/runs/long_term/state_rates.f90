@@ -52,6 +52,8 @@ module mech9_state_rates
 
   !> Largest part of a parameter's range by which it changes at once, and the least part of this.
   real(wp), parameter :: part_of_range = 0.02_wp, least_step = 1.0e-3_wp
+  !> Steps in which parameters and coordinates change together, where they cannot change one after the other.
+  integer, parameter :: steps_together = 40
   !> A position that moves further than this at once has left its branch [rad, sizes of the mechanism].
   real(wp), parameter :: largest_move = 0.2_wp
 
@@ -144,8 +146,7 @@ contains
 
     n = size(self%free)
     f = 0.0_wp
-    call self%take_values(values, t, err)
-    if (.not. allocated(err)) call move_to(self, x(:n), t, err)
+    call go_to(self, x(:n), values, t, err)
     if (.not. allocated(err)) call set_rates(self, x(n + 1:), t, err)
     if (.not. allocated(err)) call find_accelerations(self, factors, err)
     if (allocated(err)) return
@@ -155,6 +156,49 @@ contains
     if (allocated(err)) return
     if (present(by_parameters)) call vary_by_parameters(self, factors, by_parameters, err)
   end subroutine find
+
+  !> Go to other values of parameters and free coordinates: first the parameters, and where this way is blocked both together.
+  subroutine go_to(self, free, values, t, err)
+    class(state_rates_type), intent(inout) :: self      !< the function
+    real(wp), intent(in) :: free(:)                     !< (n) the free coordinates [rad, m]
+    real(wp), intent(in) :: values(:)                   !< (P) parameters, in the units of the data file
+    real(wp), intent(in) :: t                           !< time of the drives [s]
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    real(wp) :: first_free(size(free)), first_values(size(values)), part
+    integer :: i
+
+    first_free = self%state%q(self%free)
+    first_values = self%values
+    call step_in_order(self, .true., free, values, t, err)
+    if (.not. allocated(err) .or. size(self%plan%closures) == 0) return
+    call step_in_order(self, .false., first_free, first_values, t, err)
+    do i = 1, steps_together
+      if (allocated(err)) return
+      part = real(i, wp)/steps_together
+      call step_in_order(self, .false., first_free + part*(free - first_free), first_values + part*(values - first_values), t, err)
+      if (allocated(err)) &
+        call step_in_order(self, .true., first_free + part*(free - first_free), first_values + part*(values - first_values), t, err)
+    end do
+    if (.not. allocated(err)) call step_in_order(self, .true., free, values, t, err)
+  end subroutine go_to
+
+  !> Change parameters and free coordinates one after the other.
+  subroutine step_in_order(self, values_first, free, values, t, err)
+    class(state_rates_type), intent(inout) :: self      !< the function
+    logical, intent(in) :: values_first                 !< the parameters come first
+    real(wp), intent(in) :: free(:)                     !< (n) the free coordinates [rad, m]
+    real(wp), intent(in) :: values(:)                   !< (P) parameters, in the units of the data file
+    real(wp), intent(in) :: t                           !< time of the drives [s]
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+
+    if (values_first) then
+      call self%take_values(values, t, err)
+      if (.not. allocated(err)) call move_to(self, free, t, err)
+    else
+      call move_to(self, free, t, err)
+      if (.not. allocated(err)) call self%take_values(values, t, err)
+    end if
+  end subroutine step_in_order
 
   !> Take other values of the parameters, in steps in which the independent coordinates keep their values and the others stay near
   !> by.
