@@ -57,9 +57,6 @@ contains
         if (contact%has_friction() .and. time%end < time%start) &
           call diagnostics%add(span_of(group, 'friction', 1), 'friction does not allow a motion back in time; give an end '// &
                                'after the start, or leave friction= out')
-        if (mechanism%has_frictions()) &
-          call diagnostics%add(group%span, 'contacts and frictions of pairs are not available together; leave out the groups '// &
-                               '&contact or the groups &friction')
         if (contact%surface == profile_surface) then
           call append_sides(group, mechanism%units, contact, mechanism%contacts, diagnostics)
         else

@@ -143,13 +143,14 @@ contains
     class(free_simulation_type), intent(inout) :: self   !< the simulation
     logical, intent(in) :: at_start                      !< there was no step yet
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
-    integer :: before
+    integer :: before, rubbing
 
     before = self%motion%systems
+    rubbing = 0
     ! angles are continued within the step, which is forgotten behind the event
     if (.not. at_start) call continue_to_step(self, err)
     if (allocated(err)) return
-    if (at_start) call self%motion%meet_events(0, 0, 0, 0.0_wp*self%motion%system%state%dq, .true., self%events, &
+    if (at_start) call self%motion%meet_events(0, 0, rubbing, 0.0_wp*self%motion%system%state%dq, .true., self%events, &
                                                 self%impacts, err)
     if (.not. at_start) call self%motion%pass_joint(self%events, self%impacts, err)
     if (allocated(err)) return
@@ -204,7 +205,9 @@ contains
   subroutine take_changes(self, err)
     class(free_simulation_type), intent(inout) :: self   !< the simulation, started
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
+    integer :: rubbing
 
+    rubbing = 0
     self%t = self%motion%system%state%t
     self%end = self%t
     if (self%motion%contacts%any_held() .or. allocated(self%motion%system%friction)) then
@@ -212,7 +215,7 @@ contains
       if (allocated(self%motion%system%friction)) self%motion%heat = self%motion%system%state%heat
       self%motion%t = self%t
       self%motion%y = self%motion%system%vector()
-      call self%motion%meet_events(0, 0, 0, 0.0_wp*self%motion%system%state%dq, .false., self%events, self%impacts, err)
+      call self%motion%meet_events(0, 0, rubbing, 0.0_wp*self%motion%system%state%dq, .false., self%events, self%impacts, err)
     else
       call self%motion%restart(self%t, self%motion%system%vector(), err)
     end if

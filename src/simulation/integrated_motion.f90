@@ -24,7 +24,7 @@ module mech9_integrated_motion
   use mech9_stop_contacts, only: stop_contacts_type
   use mech9_contact_motion, only: note_slip
   use mech9_contact_events, only: meet_contacts, find_pressed
-  use mech9_friction_events, only: choose_modes
+  use mech9_friction_events, only: choose_modes, fail_undecided
   use mech9_held_coordinates, only: choose_held, hold_by_drives
   use mech9_motion_event, only: motion_events_type
   use mech9_event_variation, only: event_variation_type, impact_type
@@ -369,7 +369,7 @@ contains
     class(integrated_motion_type), intent(inout) :: self   !< the motion
     integer, intent(in) :: met                             !< number of the end that is met, left or released; 0: none
     integer, intent(in) :: friction                        !< number of the friction that changes; 0: none
-    integer, intent(in) :: rubbing                         !< number of the contact of links whose friction changes; 0: none
+    integer, intent(inout) :: rubbing      !< number of the contact of links whose friction changes; then 0 if it came to rest; 0: none
     real(wp), intent(in) :: of_held(:)                     !< (M) rates that held coordinates would have if nothing held them [rad/s, m/s]
     logical, intent(in) :: at_start                        !< there was no step yet
     type(motion_events_type), intent(inout) :: events      !< gets impacts, stops that close and open, and pairs that stick and slip
@@ -400,7 +400,7 @@ contains
     if (allocated(impacts) .and. hits .and. (self%angles%give_same_wrenches() .or. .not. self%angles%in_use())) &
       call impacts%take(self%system%plan, self%system%state, impulses, changes, err)
     if (allocated(err)) return
-    if (allocated(self%system%friction)) call meet_frictions(self, met, friction, at_start, holds_change, events, err)
+    if (allocated(self%system%friction)) call meet_frictions(self, met, friction, rubbing, at_start, holds_change, events, err)
     if (allocated(err)) return
     call events%judge_progress(before, self%t, stalls)
     if (stalls) then
@@ -444,12 +444,13 @@ contains
     if (allocated(self%system%friction)) self%system%friction%held = [integer ::]
   end subroutine begin_passage
 
-  !> Choose which pairs stick and which slip from now on. Where stops hold other coordinates, these are changed first. Frictions may
-  !> press a contact that touches, which then closes, until both agree.
-  subroutine meet_frictions(self, met, friction, at_start, holds_change, events, err)
+  !> Choose which pairs stick and which slip from now on. Where stops hold other coordinates, these are changed first. Frictions may press
+  !> a contact that touches, which then closes, or change what contacts of links need, until both agree.
+  subroutine meet_frictions(self, met, friction, slides_on, at_start, holds_change, events, err)
     class(integrated_motion_type), intent(inout) :: self   !< the motion, whose system has the rates of all independent coordinates
     integer, intent(in) :: met                             !< number of the end that is met, left or released; 0: none
     integer, intent(in) :: friction                        !< number of the friction that changes; 0: none
+    integer, intent(inout) :: slides_on                    !< number of the contact of links that can stick no longer; 0: none
     logical, intent(in) :: at_start                        !< there was no step yet
     logical, intent(inout) :: holds_change                 !< other coordinates are to be held
     type(motion_events_type), intent(inout) :: events      !< gets pairs that stick and slip
@@ -460,20 +461,19 @@ contains
     integer :: round
     logical :: pressed
 
-    do round = 0, size(self%contacts%ends)
+    do round = 0, 2*(size(self%contacts%ends) + size(self%system%model%mechanism%frictions))
       if (holds_change) self%system%friction%held = [integer ::]
       if (holds_change) call self%hold_coordinates(err)
       if (allocated(err)) return
       call choose_modes(self%system, merge(friction, 0, round == 0), at_start, sticking, events, err)
       if (.not. allocated(err)) call find_pressed(self%system, self%contacts, met, pressed, err)
       if (allocated(err)) return
-      if (.not. pressed .or. round == size(self%contacts%ends)) exit
-      call meet_contacts(self%system, 0, 0, 0.0_wp*self%system%state%dq, self%contacts, impulses, changes, impact, holds_change, &
-                         events, err)
+      if (.not. pressed) exit
+      call meet_contacts(self%system, 0, slides_on, 0.0_wp*self%system%state%dq, self%contacts, impulses, changes, impact, &
+                         holds_change, events, err, again=.true.)
       if (allocated(err)) return
     end do
-    if (pressed) call raise(err, exit_integrator, failure_many_events)
-    if (pressed) err%failure%t = self%t
+    if (pressed) call fail_undecided(self%system, err)
     call self%system%friction%take_held(sticking, holds_change)
   end subroutine meet_frictions
 

@@ -379,10 +379,3 @@ def test_bad_groups_are_told(checks, mech9d, tmp_path, items, message):
     point = '' if 'point=' in items else "point='C', "
     _, _, told = go(mech9d, tmp_path, DISC + WEIGHT + start([0, 0.05, 0], [0, 0, 0]) + f'&contact {point}{items} /\n', 1, code=3)
     checks.true(message in told, 'the message', told)
-
-
-def test_contacts_exclude_frictions_of_pairs(checks, mech9d, tmp_path):
-    text = ("&structure cq=1 /\n&pair coordinate=1, links=1,2, kind='prismatic', axis=0,0,1 /\n&body link=2, mass=1 /\n"
-            "&point name='C', link=2, position=0,0,0 /\n&contact point='C' /\n&friction coordinate=1, dynamic=0.1 /\n")
-    _, _, told = go(mech9d, tmp_path, text, 1, code=3)
-    checks.true('are not available together' in told, 'told', told)

@@ -12,7 +12,7 @@ module mech9_contact_events
     event_stick, event_slip
   use mech9_motion_system, only: motion_system_type
   use mech9_stop_contacts, only: stop_contact_type, stop_contacts_type, gap_motion, gap_acceleration
-  use mech9_contact_motion, only: correct_rates
+  use mech9_contact_motion, only: correct_rates, acceleration_of_contact
   use mech9_event_variation, only: impact_type
   use mech9_contact_equations, only: contact_equations_type, contact_outcome_type, find_contact_equations, find_impact, find_pushing
   implicit none
@@ -55,10 +55,10 @@ contains
 
   !> Meet all contacts at the present state of the system, whose independent rates change at impacts. A compliant end that is met or left is
   !> noted alone. Fails where drives move a coordinate beyond its stop.
-  subroutine meet_contacts(system, met, rubbing, of_held, contacts, impulses, changes, impact, holds_change, events, err)
+  subroutine meet_contacts(system, met, rubbing, of_held, contacts, impulses, changes, impact, holds_change, events, err, again)
     class(motion_system_type), intent(inout) :: system                     !< the system, moved to the time, with all rates
     integer, intent(in) :: met                                             !< number of the end that is met or left; 0: none
-    integer, intent(in) :: rubbing                 !< number of the contact of links that comes to rest or can stick no longer; 0: none
+    integer, intent(inout) :: rubbing              !< number of the contact of links that comes to rest or can stick no longer; then 0 in the first case; 0: none
     real(wp), intent(in) :: of_held(:)                                     !< (M) rates that held coordinates would have if nothing held them
     type(stop_contacts_type), intent(inout) :: contacts                    !< all ends; those that are closed and held change
     real(wp), intent(out) :: impulses(:)                                   !< (M) on coordinates, positive while they grow [N m s, N s]
@@ -67,6 +67,7 @@ contains
     logical, intent(out) :: holds_change                                   !< other coordinates are to be held
     type(motion_events_type), intent(inout) :: events                      !< gets the events
     type(error_type), allocatable, intent(out) :: err                      !< allocated if it failed
+    logical, intent(in), optional :: again         !< they were met at this time, and `rubbing` can stick no longer; not unless present
     integer, allocatable :: touch(:)
     real(wp), allocatable :: by_contact(:, :), ends_after(:)
     type(contact_outcome_type) :: outcome
@@ -95,10 +96,11 @@ contains
     changes = -system%state%dq
     system%state%dq = system%state%dq + of_held
     comes_to_rest = .false.
-    if (rubbing > 0) comes_to_rest = .not. system%contact%sticks(rubbing)
+    if (rubbing > 0) comes_to_rest = .not. (system%contact%sticks(rubbing) .or. present(again))
     if (comes_to_rest) call bring_to_rest(system, rubbing, err)
     if (allocated(err)) return
-    call find_outcome(system, contacts, touch, met, merge(0, rubbing, comes_to_rest), by_contact, ends_after, outcome, err)
+    if (comes_to_rest) rubbing = 0
+    call find_outcome(system, contacts, touch, met, rubbing, by_contact, ends_after, outcome, err)
     if (allocated(err)) return
     changes = changes + system%state%dq
     if (any(by_contact(1, :) > 0.0_wp)) impact = impact_of(contacts%ends, touch, by_contact(1, :), ends_after)
@@ -194,7 +196,8 @@ contains
     end associate
   end subroutine take_friction
 
-  !> Find whether frictions and loads press a contact that touches and rests, but does not hold its coordinate.
+  !> Find whether contacts do not agree with the frictions of pairs, which were chosen after them: frictions and loads press one that touches
+  !> and rests, but does not hold its coordinate, or a contact of links has a force or a friction that its mode does not allow.
   subroutine find_pressed(system, contacts, met, pressed, err)
     class(motion_system_type), intent(inout) :: system     !< the system, with the rates of independent coordinates and its modes of friction
     type(stop_contacts_type), intent(in) :: contacts       !< all ends
@@ -202,25 +205,59 @@ contains
     logical, intent(out) :: pressed                        !< there is one
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     type(contact_equations_type) :: equations
-    integer, allocatable :: touch(:)
+    integer, allocatable :: judged(:)
     integer :: i
 
     pressed = .false.
-    touch = pack([(i, i=1, size(contacts%ends))], [(touches(system, contacts%ends(i), .false.) .and. i /= met, &
-                                                    i=1, size(contacts%ends))] .and. .not. contacts%ends%held)
-    if (all(system%model%mechanism%frictions%is_smooth)) return
-    if (size(touch) == 0) return
-    call find_contact_equations(system, contacts%held_coordinates(system%plan%n_coordinates), contacts%ends(touch), equations, err)
+    if (all(system%model%mechanism%frictions%is_smooth) .and. .not. allocated(system%contact)) return
+    judged = pack([(i, i=1, size(contacts%ends))], [(may_disagree(i), i=1, size(contacts%ends))])
+    if (size(judged) == 0) return
+    call find_contact_equations(system, contacts%held_coordinates(system%plan%n_coordinates), contacts%ends(judged), equations, err)
     if (.not. allocated(err)) call system%present(err)
     if (allocated(err)) return
-    do i = 1, size(touch)
-      associate (end => contacts%ends(touch(i)))
-        pressed = pressed .or. (abs(equations%rates(i)) <= equations%round_off(i) .and. .not. equations%g(i, i) <= 0.0_wp .and. &
-                                gap_acceleration(system%model%mechanism, system%plan, system%state, end) &
-                                < -pressing*maxval(abs(system%state%ddq)))
+    do i = 1, size(judged)
+      associate (end => contacts%ends(judged(i)))
+        if (end%contact > 0 .and. (end%held .or. .not. end%is_rigid)) then
+          pressed = pressed .or. is_contradicted(system, end%contact, norm2(equations%slip(:, i)) <= equations%still(i))
+        else
+          pressed = pressed .or. (abs(equations%rates(i)) <= equations%round_off(i) .and. .not. equations%g(i, i) <= 0.0_wp .and. &
+                                  gap_acceleration(system%model%mechanism, system%plan, system%state, end) &
+                                  < -pressing*maxval(abs(system%state%ddq)))
+        end if
       end associate
     end do
+  contains
+    !> Whether an end can disagree: a contact of links that acts, or an end that touches and does not hold its coordinate.
+    logical function may_disagree(i)
+      integer, intent(in) :: i   !< number of the end
+
+      associate (end => contacts%ends(i))
+        may_disagree = touches(system, end, .false.)
+        if (.not. (end%contact > 0 .and. (end%held .or. .not. end%is_rigid))) &
+          may_disagree = may_disagree .and. i /= met .and. .not. end%held
+      end associate
+    end function may_disagree
   end subroutine find_pressed
+
+  !> Whether the force of a contact of links that acts contradicts its mode.
+  logical function is_contradicted(system, number, rests)
+    class(motion_system_type), intent(in) :: system        !< the system, with its forces and accelerations
+    integer, intent(in) :: number                          !< of the contact
+    logical, intent(in) :: rests                           !< it has no slip
+    real(wp) :: acceleration(3)
+
+    associate (contact => system%model%mechanism%contacts(number), acting => system%contact)
+      is_contradicted = acting%forces(1, number) < -pressing*maxval(abs(acting%forces))
+      if (.not. contact%has_friction()) return
+      if (acting%sticks(number)) then
+        is_contradicted = is_contradicted .or. acting%excess(contact, number) > pressing
+      else if (rests) then
+        acceleration = acceleration_of_contact(contact, system%plan, system%state)
+        is_contradicted = is_contradicted .or. &
+                          dot_product(acceleration, acting%direction(:, number)) < -pressing*maxval(abs(system%state%ddq))
+      end if
+    end associate
+  end function is_contradicted
 
   !> Whether a rigid end touches, or a compliant contact of links is pressed.
   pure logical function touches(system, end, is_met)

@@ -15,7 +15,7 @@ module mech9_friction_events
   use mech9_motion_system, only: motion_system_type
   implicit none
   private
-  public :: choose_modes, fail_in_paradox
+  public :: choose_modes, fail_in_paradox, fail_undecided
 
   !> The pairs at rest and the freedoms by which they move.
   type :: resting_pairs_type
@@ -47,12 +47,14 @@ contains
     associate (mechanism => system%model%mechanism)
       ! the forces of all pairs are needed, in whatever way they act
       system%friction%modes%group = 1
-      call find_friction_balance(mechanism, system%plan, system%dynamics, system%state, system%work, system%friction, err)
+      call find_friction_balance(mechanism, system%plan, system%dynamics, system%state, system%work, system%friction, &
+                                 system%contact, err)
       if (allocated(err)) return
       if (met > 0) then
         if (before%slips(met) .and. .not. turns_back(system, met)) then
           call bring_to_rest(system, met)
-          call find_friction_balance(mechanism, system%plan, system%dynamics, system%state, system%work, system%friction, err)
+          call find_friction_balance(mechanism, system%plan, system%dynamics, system%state, system%work, system%friction, &
+                                 system%contact, err)
           if (allocated(err)) return
         end if
       end if
@@ -120,9 +122,10 @@ contains
     integer, intent(in) :: i                                   !< number of the friction
     real(wp) :: most
 
-    associate (balance => system%friction%balance, friction => system%model%mechanism%frictions(i))
-      most = friction%static*friction%bearing_load(friction%terms(balance%wrenches(:, i)))*balance%mobility(i, i)
-      turns_back = .not. balance%mobility(i, i) > 0.0_wp .or. abs(balance%accelerations(i)) > beyond_all_bounds*most
+    associate (balance => system%friction%balance, mobility => system%friction%mobility(i, i), &
+               friction => system%model%mechanism%frictions(i))
+      most = friction%static*friction%bearing_load(friction%terms(balance%wrenches(:, i)))*mobility
+      turns_back = .not. mobility > 0.0_wp .or. abs(balance%accelerations(i)) > beyond_all_bounds*most
     end associate
   end function turns_back
 
@@ -135,8 +138,8 @@ contains
 
     associate (friction => system%friction, state => system%state, independent => system%plan%independent)
       held = state%dq(friction%held)
-      state%dq(independent) = state%dq(independent) - friction%by_force(:, i) &
-                              *(dot_product(friction%rows(:, i), state%dq(independent))/friction%balance%mobility(i, i))
+      state%dq(independent) = state%dq(independent) - friction%by_impulse(:, i) &
+                              *(dot_product(friction%rows(:, i), state%dq(independent))/friction%mobility(i, i))
       state%dq(friction%held) = held
     end associate
   end subroutine bring_to_rest
@@ -151,10 +154,11 @@ contains
     integer, allocatable :: order(:)
     integer :: i, j, l, n
 
-    associate (balance => system%friction%balance, frictions => system%model%mechanism%frictions)
+    associate (balance => system%friction%balance, mobility => system%friction%mobility, &
+               frictions => system%model%mechanism%frictions)
       n = size(frictions)
-      left = balance%mobility
-      scales = [(balance%mobility(i, i), i=1, n)]
+      left = mobility
+      scales = [(mobility(i, i), i=1, n)]
       allocate (resting%turns(n), source=.false.)
       do i = 1, n
         acceleration = balance%accelerations(i)
@@ -177,7 +181,7 @@ contains
         left = left - spread(left(:, l), 2, n)*spread(left(l, :), 1, n)/left(l, l)
       end do
       allocate (resting%by_leaders(size(resting%leaders), n), source=0.0_wp)
-      call find_rates(balance%mobility, resting%leaders, resting%by_leaders)
+      call find_rates(mobility, resting%leaders, resting%by_leaders)
     end associate
   contains
     !> Whether a drive holds the coordinate in place of the sticking pair.
@@ -329,8 +333,8 @@ contains
         part = 0.0_wp
         stuck = 0
         do k = 1, size(slips)
-          if (abs(resting%by_leaders(k, i))*sqrt(system%friction%balance%mobility(resting%leaders(k), resting%leaders(k))) <= &
-              tied*sqrt(system%friction%balance%mobility(i, i))) cycle
+          if (abs(resting%by_leaders(k, i))*sqrt(system%friction%mobility(resting%leaders(k), resting%leaders(k))) <= &
+              tied*sqrt(system%friction%mobility(i, i))) cycle
           if (slips(k)) then
             part = part + resting%by_leaders(k, i)*direction(k)
           else
@@ -366,6 +370,16 @@ contains
     end subroutine fail
   end subroutine release
 
+  !> Fail because frictions of pairs and contacts of links were not found to agree.
+  subroutine fail_undecided(system, err)
+    class(motion_system_type), intent(in) :: system            !< the system
+    type(error_type), allocatable, intent(out) :: err          !< the failure
+
+    call raise(err, exit_singular, failure_undecided_friction)
+    err%failure%t = system%state%t
+    err%failure%coordinates = system%model%mechanism%frictions%coordinate
+  end subroutine fail_undecided
+
   !> Fail because frictions have no solution or several in the present state of the system.
   subroutine fail_in_paradox(system, err)
     class(motion_system_type), intent(in) :: system            !< the system, with the equations of its frictions
@@ -376,9 +390,7 @@ contains
     associate (frictions => system%model%mechanism%frictions, modes => system%friction%modes, balance => system%friction%balance)
       worst = balance%steepest(frictions, modes)
       if (worst == 0) then
-        call raise(err, exit_singular, failure_undecided_friction)
-        err%failure%t = system%state%t
-        err%failure%coordinates = frictions%coordinate
+        call fail_undecided(system, err)
         return
       end if
       err%failure%t = system%state%t

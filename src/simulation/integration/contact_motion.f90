@@ -26,7 +26,8 @@ module mech9_contact_motion
   implicit none
   private
   public :: contact_motion_type, contact_rows_type, begin_contact_motion, find_contact_motion, find_contact_rows, &
-    place_of_contact, acceleration_of_contact, correct_positions, correct_rates, note_slip
+    find_acting_rows, press, constrain, show_forces, place_of_contact, acceleration_of_contact, correct_positions, &
+    correct_rates, note_slip
 
   !> The equations of some contacts in the coordinates that move.
   type :: contact_rows_type
@@ -37,6 +38,8 @@ module mech9_contact_motion
     real(wp), allocatable :: rows(:, :, :)         !< (moving,3,contacts) slip along these axes per rate
     real(wp), allocatable :: answers(:, :, :)      !< (moving,3,contacts) accelerations by unit forces along them
     real(wp), allocatable :: speeds(:)             !< (contacts) sum of the speeds from which the slip comes [m/s]
+    real(wp), allocatable :: given(:, :)           !< (3,contacts) accelerations along these axes that rates alone give [m/s^2]
+    integer, allocatable :: acting(:)              !< (contacts) their numbers, of those that act
   end type contact_rows_type
 
   !> How contacts act in a motion.
@@ -206,63 +209,148 @@ contains
     type(contact_motion_type), intent(inout) :: self      !< the contacts, with their modes; get their forces
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
     type(contact_rows_type) :: equations
-    integer, allocatable :: acting(:)
-    real(wp) :: free(size(plan%independent)), all_forces(size(plan%independent))
-    integer :: i, c
+    real(wp) :: free(size(plan%independent))
 
     state%contact_force = 0.0_wp
     self%forces = 0.0_wp
     call find_equations(mechanism, plan, dynamics, state, work, err)
     if (allocated(err)) return
-    acting = pack([(i, i=1, size(self%acts))], self%acts)
-    call find_contact_rows(mechanism, acting, plan, dynamics, state, work, .not. plan%driven(plan%independent), &
-                           equations, err)
+    call find_acting_rows(mechanism, plan, dynamics, state, work, .not. plan%driven(plan%independent), self, equations, err)
     if (allocated(err)) return
     associate (moving => equations%moving)
+      work%accelerations = 0.0_wp
       free(:size(moving)) = work%forces(moving) - work%velocity_terms(moving)
       if (size(moving) > 0) call cholesky_solve(size(moving), equations%factors, free(:size(moving)))
-      call find_forces(mechanism%contacts, plan, state, equations, free(:size(moving)), self, acting, err)
-      if (allocated(err)) return
-      work%accelerations = 0.0_wp
       work%accelerations(moving) = free(:size(moving))
-      do i = 1, size(acting)
-        associate (force => self%forces(:, acting(i)))
-          work%accelerations(moving) = work%accelerations(moving) + matmul(equations%answers(:, :, i), force)
-          state%contact_force(:, acting(i)) = matmul(equations%axes(:, :, i), force)
-          all_forces = 0.0_wp
-          do c = 1, 3
-            all_forces(moving) = all_forces(moving) + equations%rows(:, c, i)*force(c)
-          end do
-          work%forces = work%forces + all_forces
+    end associate
+    call press(mechanism%contacts, equations, state, self, work%accelerations, err)
+    if (.not. allocated(err)) call show_forces(equations, self, state, work%forces)
+  end subroutine find_contact_motion
+
+  !> Find the equations of the contacts that act, in a state whose equations of motion are found and that has no other accelerations than
+  !> those by rates alone.
+  subroutine find_acting_rows(mechanism, plan, dynamics, state, work, moves, self, equations, err)
+    type(mechanism_type), intent(in) :: mechanism         !< the mechanism
+    type(plan_type), intent(in) :: plan                   !< its plan
+    type(dynamics_plan_type), intent(in) :: dynamics      !< its plan of dynamics
+    type(state_type), intent(in) :: state                 !< the state
+    type(lagrange_work_type), intent(in) :: work          !< with the coefficients of motion and the Jacobian
+    logical, intent(in) :: moves(:)                       !< (independent) no drive moves the coordinate
+    type(contact_motion_type), intent(in) :: self         !< the contacts, with their modes
+    type(contact_rows_type), intent(out) :: equations     !< the equations
+    type(error_type), allocatable, intent(out) :: err     !< allocated if a coordinate has no inertia
+    integer, allocatable :: acting(:)
+    integer :: i
+
+    acting = pack([(i, i=1, size(self%acts))], self%acts)
+    call find_contact_rows(mechanism, acting, plan, dynamics, state, work, moves, equations, err)
+    if (allocated(err)) return
+    allocate (equations%given(3, size(acting)))
+    do i = 1, size(acting)
+      equations%given(:, i) = matmul(acceleration_of_contact(mechanism%contacts(acting(i)), plan, state), equations%axes(:, :, i))
+    end do
+    call move_alloc(acting, equations%acting)
+  end subroutine find_acting_rows
+
+  !> Add to accelerations without contacts those by the forces of contacts, which they determine.
+  subroutine press(contacts, equations, state, self, accelerations, err)
+    type(contact_type), intent(in) :: contacts(:)         !< all contacts
+    type(contact_rows_type), intent(in) :: equations      !< the equations of those that act
+    type(state_type), intent(inout) :: state              !< the state; gets the forces
+    type(contact_motion_type), intent(inout) :: self      !< all contacts; get their forces
+    real(wp), intent(inout) :: accelerations(:)           !< (independent) of the independent coordinates [rad/s^2, m/s^2]
+    type(error_type), allocatable, intent(out) :: err     !< allocated if friction draws a contact together
+    real(wp) :: free(size(equations%moving))
+    integer :: i
+
+    state%contact_force = 0.0_wp
+    self%forces = 0.0_wp
+    free = accelerations(equations%moving)
+    call find_forces(contacts, state%t, equations, free, self, equations%acting, err)
+    if (allocated(err)) return
+    do i = 1, size(equations%acting)
+      associate (force => self%forces(:, equations%acting(i)))
+        free = free + matmul(equations%answers(:, :, i), force)
+        state%contact_force(:, equations%acting(i)) = matmul(equations%axes(:, :, i), force)
+      end associate
+    end do
+    accelerations(equations%moving) = free
+  end subroutine press
+
+  !> Show the forces of contacts in a state, and add them to the generalized forces of other loads.
+  pure subroutine show_forces(equations, self, state, forces)
+    type(contact_rows_type), intent(in) :: equations      !< the equations of the contacts that act
+    type(contact_motion_type), intent(in) :: self         !< all contacts, with their forces
+    type(state_type), intent(inout) :: state              !< gets the forces
+    real(wp), intent(inout) :: forces(:)                  !< (independent) on the independent coordinates [N m, N]
+    integer :: i
+
+    associate (moving => equations%moving)
+      do i = 1, size(equations%acting)
+        associate (force => self%forces(:, equations%acting(i)))
+          state%contact_force(:, equations%acting(i)) = matmul(equations%axes(:, :, i), force)
+          forces(moving) = forces(moving) + matmul(equations%rows(:, :, i), force)
         end associate
       end do
     end associate
-  end subroutine find_contact_motion
+  end subroutine show_forces
+
+  !> Take from accelerations what rigid contacts that are closed do not allow: along their normals, and along the tangents of those that
+  !> stick. Contacts that slide act without friction here.
+  subroutine constrain(contacts, equations, self, accelerations)
+    type(contact_type), intent(in) :: contacts(:)         !< all contacts
+    type(contact_rows_type), intent(in) :: equations      !< the equations of those that act
+    type(contact_motion_type), intent(in) :: self         !< all contacts, with their modes
+    real(wp), intent(inout) :: accelerations(:)           !< (independent) of the independent coordinates
+    integer, dimension(3*size(equations%acting)) :: of_contact, along
+    real(wp), allocatable :: a(:, :), x(:), changes(:)
+    integer :: m, i, j, c
+    logical :: depends
+
+    m = 0
+    do i = 1, size(equations%acting)
+      do c = 1, 3
+        if (.not. merge(contacts(equations%acting(i))%is_rigid, self%sticks(equations%acting(i)), c == 1)) cycle
+        m = m + 1
+        of_contact(m) = i
+        along(m) = c
+      end do
+    end do
+    if (m == 0) return
+    allocate (a(m, m), x(m), changes(m))
+    associate (moving => equations%moving)
+      do j = 1, m
+        do i = 1, m
+          a(i, j) = dot_product(equations%rows(:, along(i), of_contact(i)), equations%answers(:, along(j), of_contact(j)))
+        end do
+        x(j) = -dot_product(equations%rows(:, along(j), of_contact(j)), accelerations(moving))
+      end do
+      call solve_least(a, x, spread(1.0_wp, 1, m), changes, depends)
+      do j = 1, m
+        accelerations(moving) = accelerations(moving) + changes(j)*equations%answers(:, along(j), of_contact(j))
+      end do
+    end associate
+  end subroutine constrain
 
   !> Find the forces of the contacts that act.
-  subroutine find_forces(contacts, plan, state, equations, free, self, acting, err)
+  subroutine find_forces(contacts, t, equations, free, self, acting, err)
     type(contact_type), intent(in) :: contacts(:)         !< all contacts
-    type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
-    type(state_type), intent(in) :: state                 !< the state, with the accelerations that rates alone give
+    real(wp), intent(in) :: t                             !< time, for a failure [s]
     type(contact_rows_type), intent(in) :: equations      !< their equations
     real(wp), intent(in) :: free(:)                       !< (moving) accelerations without contacts
     type(contact_motion_type), intent(inout) :: self      !< all contacts; get their forces
     integer, intent(in) :: acting(:)                      !< numbers of those that act
     type(error_type), allocatable, intent(out) :: err     !< allocated if friction draws a contact together
-    integer :: of_contact(3*size(acting)), along(3*size(acting)), m, i, j, c
+    integer :: of_contact(3*size(acting)), along(3*size(acting)), m, i, j
     real(wp) :: lines(3, 3*size(acting)), directions(2, size(acting)), needed(3, size(acting))
     real(wp), allocatable :: a(:, :), x(:), scale(:), forces(:)
-    real(wp) :: given(3), acceleration(3), answer(size(free))
+    real(wp) :: answer(size(free))
     logical :: depends
 
     m = 0
     do i = 1, size(acting)
       associate (k => acting(i), force => self%forces(:, acting(i)))
-        given = acceleration_of_contact(contacts(acting(i)), plan, state)
-        do c = 1, 3
-          acceleration(c) = dot_product(equations%axes(:, c, i), given) + dot_product(equations%rows(:, c, i), free)
-        end do
-        needed(:, i) = -acceleration
+        needed(:, i) = -equations%given(:, i) - matmul(free, equations%rows(:, :, i))
         directions(:, i) = slip_direction(contacts(acting(i)), equations%places(i), equations%axes(:, :, i), self%direction(:, k))
         if (contacts(acting(i))%is_rigid) then
           call add(1, [1.0_wp, 0.0_wp, 0.0_wp])
@@ -295,7 +383,7 @@ contains
       if (along(j) > 1 .or. a(j, j) > 0.0_wp) cycle
       if (.not. dot_product(equations%rows(:, 1, of_contact(j)), equations%answers(:, 1, of_contact(j))) > 0.0_wp) cycle
       call raise(err, exit_integrator, failure_contact_paradox)
-      err%failure%t = state%t
+      err%failure%t = t
       associate (k => of_contact(j), contact => contacts(acting(of_contact(j))))
         err%failure%number = contact%number
         err%failure%values = reshape([contact%sliding_friction, &

@@ -6,7 +6,7 @@ module mech9_integration_tolerances
   implicit none
   private
   public :: trusted_closing, trusted_between_steps, worthwhile_improvement, short_way, round_off_of_jumps, &
-    steepest_slope, third_derivative_step, slip_of_errors
+    steepest_slope, third_derivative_step, slip_of_errors, blocked_part
 
   ! Closed chains.
 
@@ -43,4 +43,6 @@ module mech9_integration_tolerances
 
   !> The direction of a slip below this part of the speeds from which it comes is an error of integration; its direction does not change then.
   real(wp), parameter :: slip_of_errors = 1.0e-8_wp
+  !> Contacts hold the coordinate of a pair if they leave this part of its mobility: the square root of the round-off of mobilities.
+  real(wp), parameter :: blocked_part = 1.0e-8_wp
 end module mech9_integration_tolerances

@@ -176,8 +176,9 @@ contains
     if (allocated(self%friction)) rubs = present(with_sticking) .or. self%friction%modes%any_slips() .or. &
                                          any(self%model%mechanism%frictions%is_smooth)
     if (rubs) then
-      call find_frictions(self%model%mechanism, self%plan, self%dynamics, self%state, self%work, self%friction, err)
+      call find_frictions(self%model%mechanism, self%plan, self%dynamics, self%state, self%work, self%friction, self%contact, err)
     else if (touches) then
+      if (allocated(self%friction)) self%state%friction = 0.0_wp
       call find_contact_motion(self%model%mechanism, self%plan, self%dynamics, self%state, self%work, self%contact, err)
     else
       if (allocated(self%friction)) self%state%friction = 0.0_wp
