@@ -124,8 +124,9 @@ double mech9_results_number(const mech9_results *results, int i);
 int mech9_results_parameters(const mech9_results *results);       /* 0: no derivatives */
 /* Parameters come in the order of mech9_mechanism_parameter. */
 double mech9_results_derivative(const mech9_results *results, int i, int parameter);
-/* The report: of a run and a cam as JSON, as the option --report writes it, of a check in words; null: there is none. That of a run
- * with &output reactions may call user procedures. */
+/* The report: of a run and a cam as JSON, as the option --report writes it, of a check in words; of ranges, assemblies, equilibria and
+ * modes the names of links and coordinates, of ranges what limits each, as JSON; null: there is none. That of a run with &output
+ * reactions may call user procedures. */
 const char *mech9_results_text(mech9_results *results);
 /* Matrices, with names and units for their rows and columns. */
 int mech9_results_matrices(const mech9_results *results);

@@ -19,7 +19,7 @@ module mech9_instant_report
   use mech9_json, only: json_type
   implicit none
   private
-  public :: add_instant
+  public :: add_instant, add_coefficients
 
 contains
 
@@ -50,8 +50,35 @@ contains
       return
     end if
     call add_jacobians(json, model%mechanism, instant)
-    if (instant%has_forces) call add_dynamics(json, model%mechanism, instant)
+    if (.not. instant%has_forces) return
+    select type (simulation => run%motion%simulation)
+    type is (driven_simulation_type)
+      ! the report of a free motion has them at its start
+      call add_coefficients(json, model%mechanism, instant%moving, instant%inertia)
+    end select
+    call add_dynamics(json, model%mechanism, instant)
   end subroutine add_instant
+
+  !> Add the coefficients of motion: [{"p": 1, "r": 5, "value": ...}, ...]
+  subroutine add_coefficients(json, mechanism, numbers, coefficients)
+    type(json_type), intent(inout) :: json          !< the report, inside its object
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    integer, intent(in) :: numbers(:)               !< (I) of the independent coordinates
+    real(wp), intent(in) :: coefficients(:, :)      !< (I,I) a(p,r), in their order; the lower triangle counts
+    integer :: p, r
+
+    call json%begin_array('coefficients')
+    do p = 1, size(numbers)
+      do r = p, size(numbers)
+        call json%begin_object()
+        call json%add('p', numbers(p))
+        call json%add('r', numbers(r))
+        call json%add('value', coefficients(r, p)/inertia_unit_of(mechanism, numbers(p), numbers(r)))
+        call json%end_object()
+      end do
+    end do
+    call json%end_array()
+  end subroutine add_coefficients
 
   !> Add the Jacobians, with the names of their rows and columns.
   subroutine add_jacobians(json, mechanism, instant)

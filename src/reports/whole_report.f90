@@ -5,19 +5,17 @@ module mech9_whole_report
   use mech9_json, only: json_type
   use mech9_facts, only: facts_type
   use mech9_diagnostics, only: diagnostics_type
-  use mech9_mechanism, only: mechanism_type
   use mech9_model, only: model_type
-  use mech9_plan, only: plan_type
   use mech9_driven_simulation, only: driven_simulation_type
   use mech9_impact_watcher, only: impact_watcher_type
   use mech9_units, only: units_type
-  use mech9_result_units, only: impulse_unit_of, inertia_unit_of
+  use mech9_result_units, only: impulse_unit_of
   use mech9_free_simulation, only: free_simulation_type
   use mech9_model_motion, only: model_motion_type
   use mech9_quantity_record, only: quantity_record_type
   use mech9_force_record, only: reacting_pairs
   use mech9_run, only: run_type
-  use mech9_instant_report, only: add_instant
+  use mech9_instant_report, only: add_instant, add_coefficients
   use mech9_periodic, only: periodic_found_type
   use mech9_periodic_report, only: add_periodic
   use mech9_report_parts, only: begin_report, add_structure, add_uniqueness
@@ -71,31 +69,10 @@ contains
     type(model_motion_type), intent(in) :: motion          !< the motion, as far as it went
     type(free_simulation_type), intent(in) :: simulation   !< its simulation
 
-    call add_coefficients(json, simulation%model%mechanism, motion%plan, simulation%coefficients)
+    call add_coefficients(json, simulation%model%mechanism, motion%plan%independent, simulation%coefficients)
     call add_coordinate_changes(json, simulation)
     call add_events(json, simulation)
   end subroutine add_free
-
-  !> Add the coefficients of motion: [{"p": 1, "r": 5, "value": ...}, ...]
-  subroutine add_coefficients(json, mechanism, plan, coefficients)
-    type(json_type), intent(inout) :: json       !< the report, inside its object
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(in) :: plan          !< the plan of the mechanism
-    real(wp), intent(in) :: coefficients(:, :)   !< (I,I) a(p,r), in the order of the independent coordinates
-    integer :: p, r
-
-    call json%begin_array('coefficients')
-    do p = 1, size(plan%independent)
-      do r = p, size(plan%independent)
-        call json%begin_object()
-        call json%add('p', plan%independent(p))
-        call json%add('r', plan%independent(r))
-        call json%add('value', coefficients(r, p)/inertia_unit_of(mechanism, plan%independent(p), plan%independent(r)))
-        call json%end_object()
-      end do
-    end do
-    call json%end_array()
-  end subroutine add_coefficients
 
   !> Add the changes of the independent coordinates, and of the angles that are integrated.
   subroutine add_coordinate_changes(json, simulation)
