@@ -456,8 +456,10 @@ def test_gallery(checks, build, tmp_path, program, folder, data):
     checks.true(program == 'mech9k' or 'mass_matrix' in found, 'free motions have a mass matrix')
     if 'mass_matrix' in found:
         acting = forces(found)
-        # inertia is the round-off of its terms where nothing acts; bias has their size
-        round_off = 64 * np.finfo(float).eps * np.abs(found['bias']).max()
+        # where nothing acts, inertia is the round-off of its terms: masses times accelerations, of the size of squares of rates
+        known = [row['d' + q] * SIZES[units['d' + q]] / SIZES[units[q]] for q in independent if 'd' + q in row]
+        sizes = [np.abs(found['bias']).max(), np.abs(found['mass_matrix']).max() * max(np.square(known), default=0.0)]
+        round_off = 64 * np.finfo(float).eps * max(sizes)
         checks.near(sum(acting.values()), 0, max(round_off, 1e-10 * max(1e-9, *(np.abs(force).max() for force in acting.values()))),
                     'all forces together')
         checks.true(np.linalg.eigvalsh(np.array(found['mass_matrix'])).min() >= 0, 'kinetic energy is not negative')

@@ -101,6 +101,10 @@ def in_units(groups, units, folder):
                     items[name] = [float(items[name][0]) * units.L ** power / units.F]
         if group in ('drive', 'load', 'motor'):
             convert_items(items, OF_LAWS, units, None)
+        if group == 'load' and 'over' in items and 'coefficients' in items:
+            over = re.fullmatch(r"'?(d?)q(\d+)'?", items['over'][0])
+            unit = units.size('r' if over[1] else 'q', moves[int(over[2])]) if over else units.L
+            items['coefficients'] = [float(v) * unit ** i for i, v in enumerate(items['coefficients'])]
         if 'dh' in items:
             items['dh'] = [float(v) / (units.L if i in (0, 2) else units.a) for i, v in enumerate(items['dh'])]
         if group == 'coupling':

@@ -82,6 +82,10 @@ def in_degrees(groups):
         for name in names:
             if name in items:
                 items[name] = [math.degrees(float(value)) for value in items[name]]
+        if group == 'load' and 'over' in items and 'coefficients' in items:
+            over = re.fullmatch(r'd?q(\d+)', items['over'][0])
+            if over and int(over[1]) not in slides:
+                items['coefficients'] = [float(value) / math.degrees(1) ** k for k, value in enumerate(items['coefficients'])]
         if 'dh' in items:
             items['dh'] = [math.degrees(float(value)) if i in (1, 3) else value for i, value in enumerate(items['dh'])]
         if group == 'mechanism':
