@@ -60,12 +60,11 @@ contains
 
   !> Write FOLDER/NAME.f90 and c.NAME, for a periodic motion NAME.dat, too. Fails with exit_data where the data file has no &branch or where its
   !> equations are no smooth function of the state, as the search for the start does, and with exit_file where a file cannot be written.
-  subroutine write_auto_files(mechanism, path, folder, name, in_threads, files, err)
+  subroutine write_auto_files(mechanism, path, folder, name, files, err)
     type(checked_mechanism_type), intent(in) :: mechanism     !< with a group &branch
     character(len=*), intent(in) :: path                      !< of its data file, from the root of the file system
     character(len=*), intent(in) :: folder                    !< of the files
     character(len=*), intent(in) :: name                      !< the name that AUTO uses
-    logical, intent(in) :: in_threads                         !< several threads may call the library at once
     character(len=:), allocatable, intent(out) :: files       !< the files, as 'NAME.f90, c.NAME'
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
     type(model_type) :: model
@@ -77,7 +76,7 @@ contains
     if (.not. allocated(err)) call find_start(model, start, err)
     call mechanism%point_at(err)
     if (.not. allocated(err)) call begin_equations(mechanism, model, start, equations, err)
-    if (.not. allocated(err)) call save(name//'.f90', equations_file(model, start, equations, path, in_threads))
+    if (.not. allocated(err)) call save(name//'.f90', equations_file(model, start, equations, path))
     if (.not. allocated(err)) call save('c.'//name, constants_file(model, start, equations, name))
     if (.not. allocated(err) .and. start%is_periodic) call save(name//'.dat', motion_file(start))
     if (.not. allocated(err)) files = files(3:)
@@ -244,12 +243,11 @@ contains
   end subroutine refuse_motion
 
   !> The file with FUNC and STPNT.
-  function equations_file(model, start, equations, path, in_threads) result(text)
+  function equations_file(model, start, equations, path) result(text)
     type(model_type), intent(in) :: model                          !< the model
     type(start_type), intent(in) :: start                          !< the start
     type(motion_equations_type), intent(in) :: equations           !< the equations
     character(len=*), intent(in) :: path                           !< of the data file
-    logical, intent(in) :: in_threads                              !< several threads may call the library at once
     character(len=:), allocatable :: text
     character(len=:), allocatable :: names(:), units(:)
     integer :: i, n
@@ -264,7 +262,7 @@ contains
     do i = 1, size(model%parameters)
       text = text//'! PAR('//to_text(i)//')  '//trim(names(n + i))//unit_in_words(units(n + i), start%parameter_power(i))//eol
     end do
-    text = text//module_text(start, path)//func_text(to_text(size(model%parameters)), in_threads)//stpnt_text(model, start)
+    text = text//module_text(start, path)//func_text(to_text(size(model%parameters)))//stpnt_text(model, start)
     do i = 1, 4
       text = text//eol//'subroutine '//unused_of(i)//'()'//eol//'end subroutine '//unused_of(i)//eol
     end do
@@ -281,7 +279,7 @@ contains
     if (text /= '') text = ' ['//text//']'
   end function unit_in_words
 
-  !> The module with the equations of each thread.
+  !> The module with the equations.
   function module_text(start, path) result(text)
     type(start_type), intent(in) :: start                          !< the start
     character(len=*), intent(in) :: path                           !< of the data file
@@ -298,9 +296,9 @@ contains
            '  real(wp), parameter :: parameter_unit(*) = [ &'//eol//numbers(10.0_wp**start%parameter_power)//']'//eol// &
            '  ! the phase of drives and loads is a part of the state'//eol// &
            '  logical, parameter :: with_clock = '//trim(merge('.true. ', '.false.', start%has_clock))//eol// &
+           '  ! threads of AUTO call it one after the other'//eol// &
            '  type(equations_type), pointer, save :: equations => null()'//eol// &
            '  logical, save :: has_told = .false.'//eol// &
-           '  !$omp threadprivate(equations)'//eol// &
            'contains'//eol//eol// &
            '  subroutine begin()'//eol// &
            '    type(mechanism_type) :: mechanism'//eol// &
@@ -322,18 +320,9 @@ contains
   end function module_text
 
   !> The subroutine FUNC.
-  pure function func_text(count, in_threads) result(text)
+  pure function func_text(count) result(text)
     character(len=*), intent(in) :: count                          !< number of parameters
-    logical, intent(in) :: in_threads                              !< several threads may call the library at once
     character(len=:), allocatable :: text
-    character(len=:), allocatable :: first, last
-
-    first = ''
-    last = ''
-    if (.not. in_threads) then
-      first = '  !$omp critical (mech9_equations)'//eol
-      last = '  !$omp end critical (mech9_equations)'//eol
-    end if
 
     text = 'subroutine func(ndim, u, icp, par, ijac, f, dfdu, dfdp)'//eol// &
            '  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan'//eol// &
@@ -345,7 +334,8 @@ contains
            '  real(wp), intent(inout) :: dfdu(ndim, ndim), dfdp(ndim, *)'//eol// &
            '  type(error_type), allocatable :: err'//eol// &
            '  integer :: i'//eol//eol// &
-           first//'  if (.not. associated(equations)) call begin()'//eol// &
+           '  !$omp critical (mech9_equations)'//eol// &
+           '  if (.not. associated(equations)) call begin()'//eol// &
            '  associate (x => u*state_unit, p => par(:'//count//')*parameter_unit)'//eol// &
            '    if (ijac == 0) then'//eol// &
            '      call equations%find(x, p, f, err)'//eol// &
@@ -354,7 +344,8 @@ contains
            '    else'//eol// &
            '      call equations%find(x, p, f, err, dfdu, dfdp(:, :'//count//'))'//eol// &
            '    end if'//eol// &
-           '  end associate'//eol//last// &
+           '  end associate'//eol// &
+           '  !$omp end critical (mech9_equations)'//eol// &
            '  f = f/state_unit'//eol// &
            '  if (ijac > 0) then'//eol// &
            '    do i = 1, ndim'//eol// &
