@@ -72,7 +72,8 @@ contains
       write (unit, '(a)') 't = '//to_text(simulation%coordinate_changes(i)%t, 8)//' s: '// &
         with_names(simulation%model%mechanism%names, change_words(simulation%coordinate_changes, i))
     end do
-    call print_events(unit, with_impulses_in_units(simulation%events, simulation%model%mechanism))
+    call print_events(unit, with_impulses_in_units(simulation%events, simulation%model%mechanism), &
+                      simulation%model%mechanism)
     call print_run_notes(unit, simulation%model, .true.)
     if (table_path /= '' .and. table_path /= '-') write (unit, '(2a)') 'table: ', table_path
   end subroutine print_report
@@ -88,9 +89,10 @@ contains
   end function by_bdf
 
   !> Print the first and the last events, and how many there are.
-  subroutine print_events(unit, events)
+  subroutine print_events(unit, events, mechanism)
     integer, intent(in) :: unit                       !< Fortran unit to write to
     type(motion_events_type), intent(in) :: events    !< of the motion
+    type(mechanism_type), intent(in) :: mechanism     !< the mechanism
     integer :: i
 
     do i = 1, events%count
@@ -98,7 +100,7 @@ contains
       if (i == events%count .and. i > printed_events + 1) &
         write (unit, '(a)') counted(i - printed_events - 1, 'more event')//'; the option --report writes all of them'
       associate (event => events%items(i))
-        write (unit, '(a)') 't = '//to_text(event%t, 8)//' s: '//event_sentence(event)
+        write (unit, '(a)') 't = '//to_text(event%t, 8)//' s: '//event_sentence(event, mechanism)
       end associate
     end do
   end subroutine print_events

@@ -1,6 +1,7 @@
 !> Sentences about the events of a motion that is not smooth.
 module mech9_event_words
   use mech9_text, only: to_text
+  use mech9_part_names, only: name_in
   use mech9_mechanism, only: mechanism_type
   use mech9_result_units, only: impulse_unit_of
   use mech9_motion_event, only: motion_event_type, motion_events_type, event_impact, event_close, event_stick, &
@@ -26,12 +27,14 @@ contains
     end do
   end function with_impulses_in_units
 
-  !> The sentence about an event, such as "stop 1 is hit, impulse -1.579".
-  pure function event_sentence(event) result(text)
+  !> The sentence about an event, such as "stop 1 (hip) is hit, impulse -1.579".
+  pure function event_sentence(event, mechanism) result(text)
     type(motion_event_type), intent(in) :: event   !< the event, with its impulse in the unit that the sentence shows
+    type(mechanism_type), intent(in), optional :: mechanism   !< tells the names of coordinates
     character(len=:), allocatable :: text
 
     text = trim(event%group)//' '//to_text(event%number)
+    if (present(mechanism)) text = text//name_behind(event, mechanism)
     select case (event%kind)
     case (event_stick)
       text = text//' sticks'
@@ -47,4 +50,18 @@ contains
       text = text//' opens'
     end select
   end function event_sentence
+
+  !> The name of the coordinate of a stop or a friction, in brackets behind a blank; empty where it has none.
+  pure function name_behind(event, mechanism) result(text)
+    type(motion_event_type), intent(in) :: event      !< the event
+    type(mechanism_type), intent(in) :: mechanism     !< the mechanism
+    character(len=:), allocatable :: text
+    integer :: coordinate
+
+    coordinate = 0
+    if (event%group == 'stop') coordinate = mechanism%stops(event%number)%coordinate
+    if (event%group == 'friction') coordinate = mechanism%frictions(event%number)%coordinate
+    text = trim(name_in(mechanism%names%coordinates, coordinate))
+    if (text /= '') text = ' ('//text//')'
+  end function name_behind
 end module mech9_event_words

@@ -155,3 +155,21 @@ def test_poles_tell_names(checks, mech9k, tmp_path):
     checks.equal(done.returncode, DONE, done.stderr)
     picture = text_of(os.path.join(tmp_path, 'film.svg'))
     checks.true('<title>velocity pole of link 4 (rocker)</title>' in picture and '<title>velocity pole of link 3</title>' in picture, 'poles')
+
+
+def test_events_tell_names(checks, mech9d, tmp_path):
+    """Stops and frictions have the names of their pairs in the lines of a run and under the pointer in a film."""
+    path = write(tmp_path, """&structure cq='slide' /
+&pair coordinate=1, name='slide', links=1,2, kind='prismatic', axis=1,0,0 /
+&body link=2, mass=1, inertia=1,1,1,0,0,0 /
+&initial coordinate='slide', position=0.5, velocity=-2 /
+&stop coordinate='slide', low=0, restitution=0.5 /
+&friction coordinate='slide', dynamic=0.1 /
+&gravity acceleration=0,-9.81,0 /
+&time end=2, intervals=20 /
+""")
+    done = run(mech9d, path, '--no-write', '--animate', 'film.svg', folder=tmp_path)
+    checks.true(' s: stop 1 (slide) is hit, impulse' in done.stderr and ' s: friction 1 (slide) sticks' in done.stderr, f'events: {done.stderr}')
+    picture = text_of(os.path.join(tmp_path, 'film.svg'))
+    for title in ('stop 1: low end of q1 (slide) at 0 m', 'friction 1: q1 (slide) sticks'):
+        checks.true(f'<title>{title}' in picture, title)

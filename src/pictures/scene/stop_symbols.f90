@@ -9,6 +9,7 @@ module mech9_stop_symbols
   use mech9_rotation, only: cross, unit, turn, turn_back
   use mech9_pose, only: pose_type, transformed
   use mech9_text, only: to_text
+  use mech9_part_names, only: name_in
   use mech9_mechanism, only: mechanism_type
   use mech9_result_units, only: unit_of, unit_name
   use mech9_film, only: film_type
@@ -132,11 +133,22 @@ contains
     character(len=:), allocatable :: name
 
     associate (stop => mechanism%stops(number))
-      name = 'stop '//to_text(number)//': '//trim(merge('low ', 'high', end == 1))//' end of q'// &
-             to_text(stop%coordinate)//' at '//to_text(stop%ends(end)/unit_of(mechanism, stop%coordinate), 6)//' '// &
-             trim(unit_name(mechanism, stop%coordinate))
+      name = 'stop '//to_text(number)//': '//trim(merge('low ', 'high', end == 1))//' end of '// &
+             coordinate_in_words(mechanism, stop%coordinate)//' at '// &
+             to_text(stop%ends(end)/unit_of(mechanism, stop%coordinate), 6)//' '//trim(unit_name(mechanism, stop%coordinate))
     end associate
   end function name_of
+
+  !> A coordinate with its name, if it has one: q1 (hip).
+  pure function coordinate_in_words(mechanism, coordinate) result(words)
+    type(mechanism_type), intent(in) :: mechanism    !< the mechanism
+    integer, intent(in) :: coordinate                !< number of the coordinate
+    character(len=:), allocatable :: words
+
+    words = trim(name_in(mechanism%names%coordinates, coordinate))
+    if (words /= '') words = ' ('//words//')'
+    words = 'q'//to_text(coordinate)//words
+  end function coordinate_in_words
 
   !> The direction across a guide in which it is seen from the side.
   pure function sideways(axis, toward) result(side)
@@ -366,7 +378,7 @@ contains
       associate (friction => mechanism%frictions(i), rates => abs(film%rates(i, :film%n_frames)))
         if (friction%is_smooth) cycle
         call scene%add_item(mark, as_stuck, symbols%node(friction%coordinate:friction%coordinate), &
-                            text='friction '//to_text(i)//': q'//to_text(friction%coordinate)//' sticks')
+                            text='friction '//to_text(i)//': '//coordinate_in_words(mechanism, friction%coordinate)//' sticks')
         call scene%show_while(rates <= resting*maxval(rates))
       end associate
     end do
