@@ -142,6 +142,16 @@ def test_teeth(checks, mech9d, tmp_path):
     checks.true('are 0.8071 m within each other at the start' in said, 'a start in the middle is told', said)
 
 
+def test_check_lists_a_path_once(checks, mech9d, tmp_path):
+    """A path with corners that stand in has several sides; a check names the contact once, with the gap to the nearest one."""
+    write_path(tmp_path, [(-1, 0), (0, 0), None, (0, 1)])
+    path = tmp_path / 'check.nml'
+    path.write_text(particle(-0.5, 0.3) + "&contact point='P', kind='path', file='path.dat', side='left', radius=0.1 /\n", encoding='utf-8')
+    lines = [line for line in run(mech9d, path, '--check').stdout.splitlines() if 'contact 1:' in line]
+    checks.equal(len(lines), 1, f'one line: {lines}')
+    checks.true('is 0.2 m from a path' in lines[0], 'the nearest side', lines)
+
+
 @pytest.mark.parametrize('closed', [False, True])
 def test_corner_at_the_first_point(checks, mech9d, tmp_path, closed):
     """An empty line may follow the first point of a curve: an end of an open one, a corner of a closed one. A ball that slides down the

@@ -16,22 +16,26 @@ module mech9_contact_text
 
 contains
 
-  !> Print all contacts; nothing where there are none.
+  !> Print all contacts; nothing where there are none. Of the sides of a path the nearest one counts.
   subroutine print_contacts(unit, mechanism, plan, start)
     integer, intent(in) :: unit                        !< the output unit
     type(mechanism_type), intent(in) :: mechanism      !< the mechanism
     type(plan_type), intent(in) :: plan                !< its plan
     type(state_type), intent(in) :: start              !< assembled position
-    type(contact_place_type) :: place
+    type(contact_place_type), allocatable :: places(:)
     type(link_motion_type) :: ball, surface
     character(len=:), allocatable :: words
     integer :: i
 
     if (.not. mechanism%has_contacts()) return
     write (unit, '(a)') 'contacts at the start:'
-    do i = 1, size(mechanism%contacts)
-      associate (contact => mechanism%contacts(i))
-        call place_of_contact(contact, plan, start, place, ball, surface)
+    allocate (places(size(mechanism%contacts)))
+    do i = 1, size(places)
+      call place_of_contact(mechanism%contacts(i), plan, start, places(i), ball, surface)
+    end do
+    do i = 1, size(places)
+      associate (contact => mechanism%contacts(i), place => places(i))
+        if (minloc(places%gap, dim=1, mask=mechanism%contacts%number == contact%number) /= i) cycle
         words = 'contact '//to_text(contact%number)//': '
         if (contact%radius > 0.0_wp) then
           words = words//'a ball of the radius '//trim(length_text(mechanism, contact%radius, 6))
