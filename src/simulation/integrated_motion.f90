@@ -465,7 +465,7 @@ contains
       if (holds_change) self%system%friction%held = [integer ::]
       if (holds_change) call self%hold_coordinates(err)
       if (allocated(err)) return
-      call choose_modes(self%system, merge(friction, 0, round == 0), at_start, sticking, events, err)
+      call choose_modes(self%system, friction, round, at_start, sticking, events, err)
       if (.not. allocated(err)) call find_pressed(self%system, self%contacts, met, pressed, err)
       if (allocated(err)) return
       if (.not. pressed) exit

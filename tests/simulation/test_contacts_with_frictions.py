@@ -152,6 +152,24 @@ def test_either_friction_gives_way(checks, mech9d, tmp_path, mu_top):
     checks.near(motion['ddq2'][late], (10*t[late] - top)/b, 1e-8, 'B under the rest', scale=1)
 
 
+def test_a_jump_of_friction_lets_a_contact_slide(checks, mech9d, tmp_path):
+    """A force along A grows until A slips. Its friction falls to the dynamic one, and B, which lies on A, would need more friction than it has
+    from then on: it slides at the same time."""
+    a, b, static, dynamic, top = 2, 3, 0.4, 0.1, 0.2
+    motion, events, _ = go(mech9d, tmp_path, ON_TOP + WEIGHT + start([0, 0, 0], [0, 0, 0]) +
+                           f'&friction coordinate=1, dynamic={dynamic}, static={static} /\n'
+                           f"&contact point='B', link=2, friction={top} /\n"
+                           "&load kind='coordinate', coordinate=1, force=10, law='polynomial', coefficients=0,1 /\n", 3, 60)
+    slips, t = static*(a + b)*G/10, motion['t']
+    assert (static - dynamic)*G*b > top*b*G
+    both = [event for event in events if event['kind'] == 'slip']
+    checks.equal(sorted((event['group'], event['number']) for event in both), [('contact', 1), ('friction', 1)], 'both slip')
+    checks.near([event['time'] for event in both], slips, 1e-10, 'at one time', scale=1)
+    late = t > slips
+    checks.near(motion['ddq1'][late], (10*t[late] - dynamic*(a + b)*G - top*b*G)/a, 1e-9, 'A under force and both frictions', scale=1)
+    checks.near(motion['ddq2'][late], top*G, 1e-9, 'B under its friction', scale=1)
+
+
 def test_a_wheel_rolls_with_friction_in_its_axle(checks, mech9d, tmp_path):
     """A cart of mass c on a wheel of mass w that rolls. With the deceleration d the axle carries c sqrt(g^2 + d^2); its friction is
     d (I/R + (c + w) R)."""
@@ -210,10 +228,14 @@ FLAIL = """&structure cq=1,2,3 /
 """
 
 
-def test_coulomb_and_power_in_a_falling_chain(checks, mech9d, tmp_path):
-    """Two bars fall from a slider onto the ground. In each row the frictions agree with the reactions and with the directions of the rates,
-    and the energy falls by their powers."""
-    d, events, _ = go(mech9d, tmp_path, FLAIL + start([0, 0.9, -1.5], [0.5, 0, 0]), 3, 3000)
+STOPS = '&stop coordinate=3, low=-0.05, high=1, restitution=0.2 /\n&stop coordinate=1, high=0.3, low=-0.2 /\n'
+
+
+@pytest.mark.parametrize('stops, bent', [('', -1.5), (STOPS, 0.5)])
+def test_coulomb_and_power_in_a_falling_chain(checks, mech9d, tmp_path, stops, bent):
+    """Two bars fall from a slider onto the ground, without and with stops. In each row the frictions agree with the reactions and with the
+    directions of the rates, and the energy falls by their powers."""
+    d, events, _ = go(mech9d, tmp_path, FLAIL + stops + start([0, 0.9, bent], [0.5, 0, 0]), 3, 3000)
     checks.true(any(event['kind'] == 'stick' and event['group'] == 'contact' for event in events), 'a contact comes to rest')
     checks.true(any(event['kind'] == 'stick' and event['group'] == 'friction' for event in events), 'and a pair')
     bounds = [0.2*np.hypot(d['R1.fy'], d['R1.fz']), 0.01*np.hypot(d['R2.fx'], d['R2.fy']), 0.01*np.hypot(d['R3.fx'], d['R3.fy'])]

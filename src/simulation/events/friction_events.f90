@@ -10,7 +10,7 @@ module mech9_friction_events
     beyond_all_bounds
   use mech9_cholesky, only: cholesky_factorize, cholesky_solve
   use mech9_friction_balance, only: friction_modes_type, new_friction_modes
-  use mech9_friction_motion, only: find_friction_balance
+  use mech9_friction_motion, only: friction_motion_type, find_friction_balance
   use mech9_motion_event, only: motion_event_type, motion_events_type, event_stick, event_slip
   use mech9_motion_system, only: motion_system_type
   implicit none
@@ -31,19 +31,22 @@ module mech9_friction_events
 contains
 
   !> Choose how the frictions act in the present state of the system, which has all rates. The modes of the system change; those that
-  !> drives hold in its plan do not, before the partition changes.
-  subroutine choose_modes(system, met, at_start, sticking, events, err)
+  !> drives hold in its plan do not, before the partition changes. Contacts may change the answer, which is then asked for again.
+  subroutine choose_modes(system, changes, round, at_start, sticking, events, err)
     class(motion_system_type), intent(inout) :: system         !< the system, moved to the time
-    integer, intent(in) :: met                                 !< number of the friction that comes to rest or to its bound; 0: none
+    integer, intent(in) :: changes                             !< number of the friction that comes to rest or to its bound; 0: none
+    integer, intent(in) :: round                               !< how often it was asked for at this event
     logical, intent(in) :: at_start                            !< there were no modes before
     integer, allocatable, intent(out) :: sticking(:)           !< coordinates that are to be held
     type(motion_events_type), intent(inout) :: events          !< gets the pairs that stick and slip from now on
     type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
     type(friction_modes_type) :: before, modes
     type(resting_pairs_type) :: resting
-    integer :: i, comes_to_rest
+    integer :: i, comes_to_rest, met
 
     before = system%friction%modes
+    met = merge(changes, 0, round == 0)
+    call note_released(system%friction, changes, round)
     associate (mechanism => system%model%mechanism)
       ! the forces of all pairs are needed, in whatever way they act
       system%friction%modes%group = 1
@@ -81,6 +84,23 @@ contains
       end do
     end associate
   end subroutine choose_modes
+
+  !> Note the pairs that slip at the present event whatever contacts do: the one that comes to its bound, and after some rounds all that have
+  !> begun to slip, lest pairs and contacts change in turn.
+  pure subroutine note_released(friction, changes, round)
+    class(friction_motion_type), intent(inout) :: friction     !< the frictions, with the modes of the last round
+    integer, intent(in) :: changes                             !< number of the friction that comes to rest or to its bound; 0: none
+    integer, intent(in) :: round                               !< number of the round, from 0 on
+    integer, parameter :: free_rounds = 2
+    integer :: i
+
+    if (round == 0) then
+      friction%released = spread(.false., 1, size(friction%modes%group))
+      if (changes > 0) friction%released(changes) = friction%modes%group(changes) > 0
+    else if (round > free_rounds) then
+      friction%released = friction%released .or. [(friction%modes%slips(i), i=1, size(friction%released))]
+    end if
+  end subroutine note_released
 
   !> Find the directions of pairs that slip, and the pairs at rest.
   subroutine find_directions(system, comes_to_rest, stuck, modes, rests)
@@ -226,7 +246,7 @@ contains
     type(resting_pairs_type), intent(in) :: resting            !< the pairs at rest
     type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
     real(wp) :: direction(size(resting%leaders))
-    integer :: at_bound
+    integer :: at_bound, l
     logical :: slips(size(resting%leaders)), agrees
 
     slips = .false.
@@ -234,6 +254,11 @@ contains
     at_bound = 0
     if (met > 0) then
       if (before%group(met) > 0) at_bound = met
+    end if
+    ! in a later round contacts are others
+    if (met == 0) then
+      slips = system%friction%released(resting%leaders) .and. [(before%slips(resting%leaders(l)), l=1, size(slips))]
+      where (slips) direction = before%direction(resting%leaders)
     end if
     call release_worst(err)
     if (agrees .or. allocated(err)) return

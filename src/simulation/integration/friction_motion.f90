@@ -39,6 +39,7 @@ module mech9_friction_motion
     real(wp), allocatable :: unbound(:)                !< (frictions) changes of the rate of each by its own impulse, if no contact were closed
     real(wp), allocatable :: pressed(:, :, :)          !< (3,contacts,0:frictions) forces of contacts without frictions and by each of them
     real(wp), allocatable :: heat_rate(:)              !< (frictions) power that they take [W]
+    logical, allocatable :: released(:)                !< (frictions) the pair begins to slip at the present event, and does not stick again in it
     logical :: touches = .false.                       !< contacts of links act
     type(contact_rows_type) :: touching                !< their equations
   contains
@@ -285,9 +286,13 @@ contains
       end do
       call show_forces(self%touching, contact, state, work%forces)
     end if
-    do i = 1, size(self%held)
-      if (dynamics%place_of(self%held(i)) > 0) work%accelerations(dynamics%place_of(self%held(i))) = 0.0_wp
-    end do
+    ! at an event a drive may still hold a pair that slips from now on
+    associate (sticking => mechanism%frictions(self%modes%leader)%coordinate)
+      do i = 1, size(self%held)
+        if (dynamics%place_of(self%held(i)) > 0 .and. any(sticking == self%held(i))) &
+          work%accelerations(dynamics%place_of(self%held(i))) = 0.0_wp
+      end do
+    end associate
   end subroutine find_frictions
 
   !> Find the power that each friction takes, in a state with its frictions and all rates.
