@@ -139,6 +139,7 @@ def test_disc_that_rolls_not(checks, mech9d, tmp_path):
     touching = 'contact 1: force on link 2 (disc)'
     near(checks, arrows, touching, 2*G*cos(SLOPE)*normal + pull)
     check_balance(checks, arrows, {'the disc': [(touching, 1), ('weight of link 2 (disc)', 1), ('load 1: force on link 2 (disc)', 1)]})
+    checks.equal(arrows.told['force in pair 1'], 0, 'the joint of the free disc passes on nothing, not even round-off')
     # it begins where the disc touches the slope
     foot = arrows.feet[touching] - arrows.feet['weight of link 2 (disc)']
     checks.true(np.abs(foot + rim).max() < 1e-3*radius*5, 'it begins at the slope', foot[0])

@@ -174,7 +174,7 @@ contains
     end do
   end subroutine append_touching
 
-  !> Remove loads, weights and moments that are zero in all frames. Forces in pairs stay.
+  !> Remove loads, weights and moments that are zero in all frames. Forces in pairs stay, without their round-off.
   subroutine remove_negligible(size_drawn, arrows)
     real(wp), intent(in) :: size_drawn                           !< the mechanism's size [m]
     type(arrow_type), allocatable, intent(inout) :: arrows(:)    !< all arrows
@@ -184,9 +184,13 @@ contains
     force = greatest_of(of_force, arrows)
     torque = max(greatest_of(of_torque, arrows), force*size_drawn)
     do i = size(arrows), 1, -1
-      if (arrows(i)%measure < of_force .or. arrows(i)%style == in_force) cycle
-      if (arrows(i)%greatest() <= negligible*merge(torque, force, arrows(i)%measure == of_torque)) &
+      if (arrows(i)%measure < of_force) cycle
+      if (arrows(i)%greatest() > negligible*merge(torque, force, arrows(i)%measure == of_torque)) cycle
+      if (arrows(i)%style == in_force) then
+        arrows(i)%ways = 0.0_wp
+      else
         call remove_arrow(i, arrows)
+      end if
     end do
   end subroutine remove_negligible
 
