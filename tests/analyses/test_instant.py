@@ -456,7 +456,7 @@ def test_gallery(checks, build, tmp_path, program, folder, data):
     checks.true(program == 'mech9k' or 'mass_matrix' in found, 'free motions have a mass matrix')
     if 'mass_matrix' in found:
         acting = forces(found)
-        # where nothing acts, inertia is the round-off of its terms: masses times accelerations, of the size of squares of rates
+        # inertia, where nothing acts, is the round-off of its terms: masses times accelerations, of the size of squares of rates
         known = [row['d' + q] * SIZES[units['d' + q]] / SIZES[units[q]] for q in independent if 'd' + q in row]
         sizes = [np.abs(found['bias']).max(), np.abs(found['mass_matrix']).max() * max(np.square(known), default=0.0)]
         round_off = 64 * np.finfo(float).eps * max(sizes)
