@@ -53,8 +53,8 @@ def test_rotators(checks, mech9d, tmp_path):
                 (low, exponents, errors, high))
     checks.near(exponents + exponents[::-1], 0, 4e-3, 'pairs', scale=1)
     checks.true(0 <= exponents[1] < 0.02, 'two are zero', exponents)
-    # tolerance: Gauss's formula in steps of 1e-10
-    checks.near(report['divergence'], exponents.sum(), 1e-7, 'the mean divergence', scale=1)
+    # tolerance: Gauss's formula of fourth order in steps of 0.3 s and less
+    checks.near(report['divergence'], exponents.sum(), 1e-4, 'the mean divergence', scale=1)
 
 
 def test_double_pendulum(checks, mech9d, tmp_path):
@@ -66,7 +66,7 @@ def test_double_pendulum(checks, mech9d, tmp_path):
     # tolerance: logarithms of what inertias, and lengths in regular motions, change by, over the time
     checks.near(exponents + exponents[::-1], 0, 0.02, 'pairs', scale=1)
     checks.true(abs(exponents[1]) < 0.1 * exponents[0], 'two are zero', exponents)
-    checks.near(report['divergence'], exponents.sum(), 1e-6, 'the mean divergence', scale=1)
+    checks.near(report['divergence'], exponents.sum(), 1e-5, 'the mean divergence', scale=1)
 
 
 def test_graze(checks, mech9d, tmp_path):
@@ -149,4 +149,4 @@ def test_hunting(checks, mech9d, tmp_path):
     report = report_of(mech9d, tmp_path, 'governor', '--exponents', '4')
     checks.near(report['exponents'][:2], 0, 0.02, 'two exponents are zero', scale=1)
     checks.true(report['exponents'][2] < -0.05, 'the others are below', report['exponents'])
-    checks.near(sum(report['exponents']), report['divergence'], 1e-6, 'their sum is the mean divergence', scale=1)
+    checks.near(sum(report['exponents']), report['divergence'], 1e-5, 'their sum is the mean divergence', scale=1)

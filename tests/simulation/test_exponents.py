@@ -137,16 +137,16 @@ def test_mean_divergence(checks, mech9d, tmp_path):
         runs[end] = json.loads((tmp_path / 'run.json').read_text())['quantities'][0]['value']
     square = (300 * runs[300.0]**2 - 50 * runs[50.0]**2) / 250
     # tolerance: a hundred rows in each second; the motion is regular
-    checks.near(report['divergence'], -0.1 - 0.6 * square, 1e-7, 'the mean divergence', scale=1)
-    checks.near(sum(report['exponents']), report['divergence'], 1e-9, 'and the sum of the exponents', scale=1)
+    checks.near(report['divergence'], -0.1 - 0.6 * square, 1e-6, 'the mean divergence', scale=1)
+    # tolerance: Gauss's formula of fourth order in steps of 0.2 s and less
+    checks.near(sum(report['exponents']), report['divergence'], 1e-6, 'and the sum of the exponents', scale=1)
     checks.near(report['exponents_change'], [table[name][-1] - table[name][99] for name in ('L1', 'L2')], 1e-15, 'changes in the second half')
     report, _, _ = go(mech9d, tmp_path, text, 1, 300.0, 'transient=50')
     checks.true('divergence' not in report, 'one exponent alone is not held against it')
     for start in ('cq=1 /\n&initial coordinate=1, position=0.5, velocity=1 /\n&initial coordinate=4, position=1.7 /\n',
                   'cq=4 /\n&initial coordinate=4, position=2.6179938779914944, velocity=0 /\n&initial coordinate=1, position=0.5 /\n'):
         report, _, said = go(mech9d, tmp_path, '&structure ' + start + FOUR_BAR, 2, 60.0, 'transient=0.1')
-        # tolerance: Gauss's formula of eighth order in steps of 1e-10
-        checks.near(sum(report['exponents']), report['divergence'], 1e-7, 'a closed chain', scale=1)
+        checks.near(sum(report['exponents']), report['divergence'], 1e-6, 'a closed chain', scale=1)
         checks.true('; mean divergence ' in said, 'is told', said)
 
 

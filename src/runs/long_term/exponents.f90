@@ -30,10 +30,12 @@ module mech9_exponents
 
   !> Times at which the running means are kept, and blocks of time for standard errors.
   integer, parameter :: kept_times = 200, blocks = 20
-  !> Directions are made orthonormal at least so often in each of these times, and before logarithms differ by more than the second number
+  !> Directions are made orthonormal about so often in each of these times, and before logarithms differ by more than the second number
   !> or so: their angles are then well above round-off.
-  integer, parameter :: least_in_each = 4
+  integer, parameter :: least_in_each = 2
   real(wp), parameter :: largest_spread = 2.0_wp
+  !> So many steps lie between two sets where nothing else asks for more of them: the integration begins anew at each.
+  real(wp), parameter :: least_steps = 4.0_wp
   !> Growth of the time between two orthonormal sets: local rates change with the motion.
   real(wp), parameter :: growth = 1.5_wp
   !> Beyond this difference directions that were integrated since the last time are parallel within the tolerances.
@@ -212,6 +214,8 @@ contains
     real(wp) :: log_volume
     integer :: i
 
+    ! half the cost; a step of the method of order 8 changes little between two points
+    divergence%takes_two = .true.
     associate (motors => simulation%model%mechanism%motors)
       call divergence%begin(simulation, pack([(i, i=1, size(motors))], [(motors(i)%motor%has_state(), i=1, size(motors))]), err)
     end associate
@@ -298,7 +302,7 @@ contains
       end if
       call sums%add(to, logs)
       spread = max(spread, maxval(abs(logs)))
-      interval = min(abs(longest), growth*abs(to - since))
+      interval = min(max(abs(longest), least_steps*abs(to - from)), growth*abs(to - since))
       if (spread > largest_spread) interval = min(interval, abs(to - since)*largest_spread/spread)
       since = to
     end do
