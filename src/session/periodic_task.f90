@@ -50,19 +50,22 @@ contains
     if (.not. allocated(err)) call start_periodic(found%motions(1), used, run%motion, err)
     if (.not. allocated(err)) call run%prepare(used, err, pictures=pictures%any_wanted())
     if (allocated(err)) then
+      ! motions that were found before an interruption are told
+      if (allocated(found%motions) .and. .not. options%has('quiet')) call print_periodic(error_unit, model, found, .false.)
       call diagnostics%add_error(err)
     else
       call carry_out(options, pictures, used, report, run, diagnostics, reported, kept, found)
-      if (.not. options%has('quiet')) call print_periodic(error_unit, model, found)
+      if (.not. options%has('quiet')) call print_periodic(error_unit, model, found, .true.)
     end if
     call run%close()
   end subroutine work_on_periodic
 
   !> Print the motions.
-  subroutine print_periodic(unit, model, found)
+  subroutine print_periodic(unit, model, found, with_results)
     integer, intent(in) :: unit                          !< Fortran unit to write to
     type(model_type), intent(in) :: model                !< the model
     type(periodic_found_type), intent(in) :: found       !< the motions
+    logical, intent(in) :: with_results                  !< a run records the first one
     integer :: i
 
     do i = 1, size(found%motions)
@@ -71,7 +74,7 @@ contains
     end do
     if (found%starts > 1) write (unit, '(a)') counted(size(found%motions), 'periodic motion')//' from '// &
       counted(found%starts, 'start')//'; '//to_text(found%failed)//' led to none'
-    if (size(found%motions) > 1) write (unit, '(a)') 'the results are those of motion 1'
+    if (size(found%motions) > 1 .and. with_results) write (unit, '(a)') 'the results are those of motion 1'
   end subroutine print_periodic
 
   !> Print a motion.

@@ -136,7 +136,11 @@ contains
       if (allocated(failure)) then
         if (failure%code == exit_interrupted .or. .not. allocated(err)) call move_alloc(failure, err)
         found%failed = found%failed + 1
-        if (err%code == exit_interrupted) return
+        if (err%code == exit_interrupted) then
+          if (size(found%motions) > 0) call raise(err, exit_interrupted, 'interrupted; '// &
+            counted(size(found%motions), 'periodic motion')//' of '//counted(found%starts - 1, 'start')//' found until then')
+          return
+        end if
       else if (.not. is_known(motion, found%motions)) then
         call append(motion, found%motions)
       end if
