@@ -18,6 +18,8 @@ module mech9_sine_cosine
   real(wp), parameter :: whole = 1.5_wp*2.0_wp**52
   !> Number of angles in a group.
   integer, parameter :: group = 4
+  !> So many angles take longer in a group than one after the other.
+  integer, parameter :: few = 2
 
 contains
 
@@ -40,6 +42,12 @@ contains
       call find_group(angles(i:i + group - 1), turned(:, i:i + group - 1))
     end do
     if (i > n) return
+    if (n - i + 1 <= few) then
+      do k = i, n
+        call find_one(angles(k), turned(:, k))
+      end do
+      return
+    end if
     ! the last group is filled up with the last angle
     do k = 1, group
       some(k) = angles(min(i + k - 1, n))
@@ -54,31 +62,39 @@ contains
   pure subroutine find_group(angles, turned)
     real(wp), intent(in) :: angles(group)       !< [rad]
     real(wp), intent(out) :: turned(2, group)   !< cosine and sine of each angle
-    real(wp) :: quarters, x, left, z, most, c, s
-    logical :: exchanged
     integer :: i
 
     do i = 1, group
-      quarters = (angles(i)*per_quarter + whole) - whole
-      ! the rest x, and its round-off error `left`
-      z = angles(i) - quarters*quarter(1)
-      most = z - quarters*quarter(2)
-      x = most - quarters*quarter(3)
-      left = ((z - most) - quarters*quarter(2)) + ((most - x) - quarters*quarter(3))
-      z = x**2
-      s = x + (left*(1.0_wp - 0.5_wp*z) + x*z*(-1.0_wp/6.0_wp + z*(1.0_wp/120.0_wp + z*(-1.0_wp/5040.0_wp + z*(1.0_wp/362880.0_wp &
-          + z*(-1.0_wp/39916800.0_wp + z*(1.0_wp/6227020800.0_wp + z*(-1.0_wp/1307674368000.0_wp &
-          + z*(1.0_wp/355687428096000.0_wp)))))))))
-      ! the round-off error of 1 - z/2 is added with the small terms
-      most = 1.0_wp - 0.5_wp*z
-      c = most + (((1.0_wp - most) - 0.5_wp*z) - x*left + z**2*(1.0_wp/24.0_wp + z*(-1.0_wp/720.0_wp + z*(1.0_wp/40320.0_wp &
-          + z*(-1.0_wp/3628800.0_wp + z*(1.0_wp/479001600.0_wp + z*(-1.0_wp/87178291200.0_wp &
-          + z*(1.0_wp/20922789888000.0_wp))))))))
-      ! quarter turns without whole turns: -2 ... 2
-      quarters = quarters - 4.0_wp*((0.25_wp*quarters + whole) - whole)
-      exchanged = abs(abs(quarters) - 1.0_wp) < 0.5_wp
-      turned(1, i) = merge(s, c, exchanged)*merge(-1.0_wp, 1.0_wp, quarters > 0.5_wp .or. quarters < -1.5_wp)
-      turned(2, i) = merge(c, s, exchanged)*merge(-1.0_wp, 1.0_wp, quarters > 1.5_wp .or. quarters < -0.5_wp)
+      call find_one(angles(i), turned(:, i))
     end do
   end subroutine find_group
+
+  !> Cosine and sine of an angle that is not too large, by the same operations alone and in a group.
+  pure subroutine find_one(angle, turned)
+    real(wp), intent(in) :: angle        !< [rad]
+    real(wp), intent(out) :: turned(2)   !< its cosine and sine
+    real(wp) :: quarters, x, left, z, most, c, s
+    logical :: exchanged
+
+    quarters = (angle*per_quarter + whole) - whole
+    ! the rest x, and its round-off error `left`
+    z = angle - quarters*quarter(1)
+    most = z - quarters*quarter(2)
+    x = most - quarters*quarter(3)
+    left = ((z - most) - quarters*quarter(2)) + ((most - x) - quarters*quarter(3))
+    z = x**2
+    s = x + (left*(1.0_wp - 0.5_wp*z) + x*z*(-1.0_wp/6.0_wp + z*(1.0_wp/120.0_wp + z*(-1.0_wp/5040.0_wp + z*(1.0_wp/362880.0_wp &
+        + z*(-1.0_wp/39916800.0_wp + z*(1.0_wp/6227020800.0_wp + z*(-1.0_wp/1307674368000.0_wp &
+        + z*(1.0_wp/355687428096000.0_wp)))))))))
+    ! the round-off error of 1 - z/2 is added with the small terms
+    most = 1.0_wp - 0.5_wp*z
+    c = most + (((1.0_wp - most) - 0.5_wp*z) - x*left + z**2*(1.0_wp/24.0_wp + z*(-1.0_wp/720.0_wp + z*(1.0_wp/40320.0_wp &
+        + z*(-1.0_wp/3628800.0_wp + z*(1.0_wp/479001600.0_wp + z*(-1.0_wp/87178291200.0_wp &
+        + z*(1.0_wp/20922789888000.0_wp))))))))
+    ! quarter turns without whole turns: -2 ... 2
+    quarters = quarters - 4.0_wp*((0.25_wp*quarters + whole) - whole)
+    exchanged = abs(abs(quarters) - 1.0_wp) < 0.5_wp
+    turned(1) = merge(s, c, exchanged)*merge(-1.0_wp, 1.0_wp, quarters > 0.5_wp .or. quarters < -1.5_wp)
+    turned(2) = merge(c, s, exchanged)*merge(-1.0_wp, 1.0_wp, quarters > 1.5_wp .or. quarters < -0.5_wp)
+  end subroutine find_one
 end module mech9_sine_cosine

@@ -4,19 +4,21 @@ module mech9_short_vectors
   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_int64_t, c_double, c_f_pointer
   implicit none
   private
-  public :: linear_combination
+  public :: linear_combination, length_of, numbers_of
 
   !> Elements, and terms, that are summed at a time.
   integer, parameter :: chunk = 64, group = 4
 
   ! Functions of SUNDIALS by their C names: the Fortran wrappers take as much time again.
   interface
+    !> The number of elements of a vector.
     function length_of(vector) bind(c, name='N_VGetLength_Serial')
       import :: c_ptr, c_int64_t
       type(c_ptr), value :: vector   !< a serial vector of SUNDIALS
       integer(c_int64_t) :: length_of
     end function length_of
 
+    !> The address of the elements of a vector.
     function numbers_of(vector) bind(c, name='N_VGetArrayPointer_Serial')
       import :: c_ptr
       type(c_ptr), value :: vector   !< a serial vector of SUNDIALS

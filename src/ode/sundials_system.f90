@@ -6,6 +6,7 @@ module mech9_sundials_system
   use mech9_error, only: error_type, raise, exit_integrator
   use mech9_ode_failures, only: failure_infinite_rate, failure_infinite_jacobian
   use mech9_ode_system, only: ode_system_type, is_recoverable
+  use mech9_short_vectors, only: length_of, numbers_of
   use mech9_sundials, only: N_Vector, FN_VGetArrayPointer, SUNMatrix
   use fsunmatrix_dense_mod, only: FSUNDenseMatrix_Data
   implicit none
@@ -50,13 +51,14 @@ contains
     type(c_ptr), value :: context    !< address of the box
     type(system_box_type), pointer :: box
     real(c_double), pointer :: y_values(:), ydot_values(:)
-    integer :: i
+    integer :: i, n
 
     answer = -1
     call c_f_pointer(context, box)
     if (box%broken) return   ! CVODE's iteration goes on after a failure of any kind
-    y_values => FN_VGetArrayPointer(y)
-    ydot_values => FN_VGetArrayPointer(ydot)
+    n = int(length_of(c_loc(y)))
+    call c_f_pointer(numbers_of(c_loc(y)), y_values, [n])
+    call c_f_pointer(numbers_of(c_loc(ydot)), ydot_values, [n])
     if (box%has_projected) then
       box%has_projected = .false.
       do i = 1, size(ydot_values)
