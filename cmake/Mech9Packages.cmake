@@ -25,7 +25,7 @@ if(MECH9_SUNDIALS_MAJOR EQUAL 6)
   set(parts libsundials_farkode_mod.a libsundials_fcvode_mod.a libsundials_arkode.a libsundials_cvode.a)
 elseif(MECH9_SUNDIALS_MAJOR EQUAL 7)
   # shared: the core calls MPI, which it brings itself; programs that do not integrate go without
-  set(parts sundials_farkode_mod sundials_fcvode_mod sundials_fcore_mod sundials_fnvecserial_mod
+  set(parts sundials_farkode_mod sundials_fcvode_mod sundials_fcore_mod sundials_fnvecserial_mod sundials_nvecserial
     sundials_fsunmatrixdense_mod sundials_fsunlinsoldense_mod sundials_fsunnonlinsolfixedpoint_mod)
   set(MECH9_SUNDIALS_LIBRARIES -Wl,--push-state,--as-needed)
 else()
