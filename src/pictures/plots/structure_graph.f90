@@ -155,8 +155,8 @@ contains
     integer :: s
 
     text = '  subgraph cluster_'//to_text(b)//' {'//line_end// &
-           '    label='//quoted('block '//to_text(b)//': '//words_of(plan, plan%blocks(b)))//'; labelloc=b; fontsize=11; '// &
-           'style=rounded; color="'//colour(b)//'"; fontcolor="'//colour(b)//'";'//line_end
+           '    label='//quoted('block '//to_text(b)//': '//words_of(mechanism%names, plan, plan%blocks(b)))//'; labelloc=b; '// &
+           'fontsize=11; style=rounded; color="'//colour(b)//'"; fontcolor="'//colour(b)//'";'//line_end
     do s = plan%blocks(b)%first_step, plan%blocks(b)%last_step
       if (plan%frame_of(plan%steps(s)%link) == s .and. mechanism%structure%joint_of_link(plan%steps(s)%link) == 0) &
         text = text//'    '//to_text(plan%steps(s)%link)//' [color="'//colour(b)//'"'// &
@@ -196,17 +196,21 @@ contains
   end function name_behind
 
   !> The chains that a block closes, and the coordinates for which it solves them.
-  pure function words_of(plan, block) result(words)
-    type(plan_type), intent(in) :: plan    !< the plan of the mechanism
-    type(block_type), intent(in) :: block  !< the block
+  pure function words_of(names, plan, block) result(words)
+    type(part_names_type), intent(in) :: names   !< of links and pairs
+    type(plan_type), intent(in) :: plan          !< the plan of the mechanism
+    type(block_type), intent(in) :: block        !< the block
     character(len=:), allocatable :: words
     integer :: i, listed
 
     words = chain_names(block%chains)
     listed = min(size(block%unknowns), most_listed)
-    if (listed == 0) return
-    words = words//' for q'//to_text([(plan%steps(block%unknowns(i))%coordinate, i=1, listed)], ', q')
-    if (listed < size(block%unknowns)) words = words//', ...'
+    do i = 1, listed
+      associate (k => plan%steps(block%unknowns(i))%coordinate)
+        words = words//trim(merge(' for', ',   ', i == 1))//' q'//to_text(k)//name_behind(names, k)
+      end associate
+    end do
+    if (listed > 0 .and. listed < size(block%unknowns)) words = words//', ...'
   end function words_of
 
   !> The pairs of a block as edges, each from the link that is known before.
