@@ -14,7 +14,7 @@ module mech9_structure_answers
   use mech9_explained_assembly, only: assemble_model
   use mech9_start_path, only: start_way_type
   use mech9_structure_text, only: print_mobility_report
-  use mech9_range_text, only: limits_in_words
+  use mech9_range_text, only: put_limits_in_words
   use mech9_json, only: json_type
   use mech9_report_parts, only: add_part_names
   use mech9_check_text, only: print_given, print_start
@@ -97,6 +97,7 @@ contains
     type(state_type) :: start
     type(motion_range_type) :: range
     type(json_type) :: json
+    character(len=:), allocatable :: limits
     integer :: i
 
     call assemble(mechanism, model, plan, start, err)
@@ -118,7 +119,8 @@ contains
       call json%begin_object()
       call json%add('coordinate', coordinates(i))
       call json%add('name', trim(name_in(model%mechanism%names%coordinates, coordinates(i))))
-      call json%add('limited_by', limits_in_words(model, plan, coordinates(i), range))
+      call put_limits_in_words(model, plan, coordinates(i), range, limits)
+      call json%add('limited_by', limits)
       call json%end_object()
     end do
     call json%end_array()

@@ -34,7 +34,7 @@ contains
     character(len=:), allocatable :: text
 
     text = trim(event%group)//' '//to_text(event%number)
-    if (present(mechanism)) text = text//name_behind(event, mechanism)
+    if (present(mechanism)) call add_name(event, mechanism, text)
     select case (event%kind)
     case (event_stick)
       text = text//' sticks'
@@ -51,17 +51,17 @@ contains
     end select
   end function event_sentence
 
-  !> The name of the coordinate of a stop or a friction, in brackets behind a blank; empty where it has none.
-  pure function name_behind(event, mechanism) result(text)
-    type(motion_event_type), intent(in) :: event      !< the event
-    type(mechanism_type), intent(in) :: mechanism     !< the mechanism
-    character(len=:), allocatable :: text
+  !> Add the name of the coordinate of a stop or a friction, in brackets behind a blank, where it has one.
+  pure subroutine add_name(event, mechanism, text)
+    type(motion_event_type), intent(in) :: event                !< the event
+    type(mechanism_type), intent(in) :: mechanism               !< the mechanism
+    character(len=:), allocatable, intent(inout) :: text        !< a sentence that begins with the stop or the friction
     integer :: coordinate
 
     coordinate = 0
     if (event%group == 'stop') coordinate = mechanism%stops(event%number)%coordinate
     if (event%group == 'friction') coordinate = mechanism%frictions(event%number)%coordinate
-    text = trim(name_in(mechanism%names%coordinates, coordinate))
-    if (text /= '') text = ' ('//text//')'
-  end function name_behind
+    if (name_in(mechanism%names%coordinates, coordinate) /= '') &
+      text = text//' ('//trim(name_in(mechanism%names%coordinates, coordinate))//')'
+  end subroutine add_name
 end module mech9_event_words

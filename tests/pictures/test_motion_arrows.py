@@ -98,7 +98,7 @@ def test_velocity_poles(checks, mech9k, tmp_path):
     text = text_of(tmp_path / 'film.html')
     film, svg = film_of(text), picture_of(text)
     pole, = [group for group in svg.iter(SVG + 'g') if group.get('class') == 'pole']
-    checks.equal(pole.findtext(SVG + 'title'), 'velocity pole of link 3', 'named under the pointer')
+    checks.equal(pole.findtext(SVG + 'title'), 'velocity pole of link 3 (coupler)', 'named under the pointer')
     item = film['items'][int(pole.get('data-i')) - 1]
     shown = np.array([letter == '1' for letter in film['holds'][item['state'] - 1]])
     places = [nodes_of(film, frame) for frame in range(len(film['times']))]

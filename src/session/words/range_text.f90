@@ -14,7 +14,7 @@ module mech9_range_text
   use mech9_explanation, only: explain
   implicit none
   private
-  public :: print_ranges, limits_in_words
+  public :: print_ranges, put_limits_in_words
 
   !> Significant digits of a limit, whose relative error is about 1e-12.
   integer, parameter :: digits = 13
@@ -29,7 +29,7 @@ contains
     type(plan_type), intent(in) :: plan            !< the plan of the mechanism
     type(state_type), intent(in) :: start          !< the closed position at the start
     type(motion_range_type) :: range
-    character(len=:), allocatable :: name
+    character(len=:), allocatable :: name, limits
     real(wp) :: factor
     integer :: i, k, named
 
@@ -42,24 +42,25 @@ contains
       call find_range(plan, start, k, range)
       factor = 1.0_wp/unit_of(model%mechanism, k)
       name = trim(unit_name(model%mechanism, k))
+      call put_limits_in_words(model, plan, k, range, limits)
       write (unit, '(a)') column('q'//to_text(k), 6)//column(to_text(factor*range%start, digits), width)// &
         column(value_of(range%lower, factor), width)//column(value_of(range%upper, factor), width)// &
         column(name, 6)//named_column(trim(name_in(model%mechanism%names%coordinates, k)), named)// &
-        limits_in_words(model, plan, k, range)
+        limits
     end do
   end subroutine print_ranges
 
   !> The causes of the limits of a coordinate on both sides, with the names of coordinates.
-  pure function limits_in_words(model, plan, coordinate, range) result(text)
-    type(model_type), intent(in) :: model         !< the model
-    type(plan_type), intent(in) :: plan           !< the plan of the mechanism
-    integer, intent(in) :: coordinate             !< number of the coordinate
-    type(motion_range_type), intent(in) :: range  !< its range
-    character(len=:), allocatable :: text
+  pure subroutine put_limits_in_words(model, plan, coordinate, range, text)
+    type(model_type), intent(in) :: model                   !< the model
+    type(plan_type), intent(in) :: plan                     !< the plan of the mechanism
+    integer, intent(in) :: coordinate                       !< number of the coordinate
+    type(motion_range_type), intent(in) :: range            !< its range
+    character(len=:), allocatable, intent(out) :: text      !< the causes
 
     text = with_names(model%mechanism%names, reasons(plan, range, 1.0_wp/unit_of(model%mechanism, coordinate), &
                                                      trim(unit_name(model%mechanism, coordinate))))
-  end function limits_in_words
+  end subroutine put_limits_in_words
 
   !> Width of the column of names; 0 where no independent coordinate has a name.
   pure integer function name_width(names, independent) result(letters)

@@ -240,7 +240,7 @@ contains
   end subroutine find_pressed
 
   !> Whether the force of a contact of links that acts contradicts its mode.
-  logical function is_contradicted(system, number, rests)
+  pure logical function is_contradicted(system, number, rests)
     class(motion_system_type), intent(in) :: system        !< the system, with its forces and accelerations
     integer, intent(in) :: number                          !< of the contact
     logical, intent(in) :: rests                           !< it has no slip
