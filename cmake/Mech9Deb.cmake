@@ -81,7 +81,9 @@ set(CPACK_DEBIAN_PYTHON3_PACKAGE_CONTROL_EXTRA "${folder}/postinst;${folder}/pre
 set(CPACK_DEBIAN_PYTHON3_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
 # Debian wants manual pages compressed.
-install(CODE "execute_process(COMMAND gzip -9nf \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}/man1/mech9k.1\"
-  \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}/man1/mech9d.1\" COMMAND_ERROR_IS_FATAL ANY)" COMPONENT programs)
+set(manual "\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}/man1")
+install(CODE "execute_process(COMMAND gzip -9nf \"${manual}/mech9k.1\" \"${manual}/mech9d.1\" COMMAND_ERROR_IS_FATAL ANY)"
+  COMPONENT programs)
+install(CODE "execute_process(COMMAND gzip -9nf \"${manual}/mech9-link.1\" COMMAND_ERROR_IS_FATAL ANY)" COMPONENT development)
 
 include(CPack)
