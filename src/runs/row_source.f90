@@ -39,7 +39,7 @@ module mech9_row_source
     type(varied_record_type) :: varied     !< finds those of forces and energies
     type(film_type), allocatable :: film   !< takes the position of each row, where it is allocated
     type(applied_forces_type) :: applied   !< loads and weights, where the film keeps forces
-    type(touching_forces_type) :: touching   !< of stops, frictions and contacts, likewise
+    type(touching_forces_type) :: touching   !< forces of stops, frictions and contacts, where the film keeps forces
     type(quantity_record_type) :: quantities   !< of the whole run
     class(section_record_type), allocatable :: section   !< takes the points of a section, where it is allocated
     type(tangent_type), allocatable, private :: tangents(:)   !< (P) of the constants, where quantities need those of joints of laws

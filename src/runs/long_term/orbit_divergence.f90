@@ -4,7 +4,8 @@
 !> directions along single numbers of the state, apart from the directions that are integrated, so that the determinant of these can be
 !> held against it (Liouville's formula). Steps are integrated by Gauss's formula: with four points on the motion itself, or with two on the
 !> polynomial of fifth degree through both ends of the step, which costs much less.
-!> Where independent coordinates change, and at events, the volume changes by the ratio of determinants of the integrated directions.
+!> A change of independent coordinates, or an event, multiplies the volume at once. This factor is the determinant of the integrated
+!> directions behind it over the one before it; its logarithm is added.
 module mech9_orbit_divergence
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
