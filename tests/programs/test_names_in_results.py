@@ -8,20 +8,12 @@ import os
 import numpy as np
 import pytest
 
+from four_bars import NAMED_BARS
 from mech9_cases import TREE, read_table, run, text_of
 
 DONE, USAGE = 0, 2
 
-FOUR_BAR = """&mechanism title='four-bar' /
-&link number=2, name='crank' /
-&link number=4, name='rocker' /
-&structure cq='A' /
-&pair coordinate=1, name='A', links=1,'crank', kind='revolute', axis=0,0,1 /
-&pair coordinate=2, links='crank',3, kind='revolute', axis=0,0,1, point=0.3,0,0, moving_point=0,0,0 /
-&pair coordinate=3, name='C', links=3,'rocker', kind='revolute', axis=0,0,1, point=1,0,0, moving_point=0.8,0,0 /
-&pair coordinate=4, name='D', links=1,'rocker', kind='revolute', axis=0,0,1, point=0.9,0,0, moving_point=0,0,0 /
-&initial coordinate='D', position=1.2 /
-&point name='P', link=3, position=0.5,0.1,0 /
+FOUR_BAR = NAMED_BARS + """&point name='P', link=3, position=0.5,0.1,0 /
 &drive coordinate='A', kind='polynomial', coefficients=0.4, 10 /
 &body link='rocker', mass=2, centre=0.4,0,0, inertia=0,0,0.1,0,0,0 /
 &time end=0.2, intervals=8 /

@@ -4,6 +4,8 @@ degrees. What is refused."""
 import numpy as np
 import pytest
 
+import branch_cases
+
 # a pendulum of 1 kg at 1 m, damped, under the torque g sin(0.7 t)
 PENDULUM = """&structure cq=1 /
 &pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
@@ -41,17 +43,7 @@ CRANK = """&structure cq=1 /
 &parameter name='r', sets='pair(2).point(1)','pair(3).point(1)', terms=0,0.5, value=0.2 /
 &time end=1, intervals=10 /
 """
-# a bar along itself against a spring, from (-800, 0) mm to a slider of 1 kg on y, 600 mm above the foot at q = 0
-TRUSS = """&mechanism length_unit='mm', angle_unit='deg' /
-&structure cq=1 /
-&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1, point=-800,0,0 /
-&pair coordinate=2, links=2,3, kind='prismatic', axis=0.8,0.6,0, point=-400,300,0 /
-&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1, point=0,600,0 /
-&pair coordinate=4, links=1,4, kind='prismatic', axis=0,1,0 /
-&body link=4, mass=1 /
-&load kind='coordinate', coordinate=2, stiffness=0.1, damping=0.0005 /
-&load kind='force', link=4, position=0,600,0, force=0,0,0 /
-&parameter name='F', sets='load(2).force(2)', factors=-1, value=0, low=-8, high=8 /
+TRUSS = branch_cases.TRUSS + """&parameter name='F', sets='load(2).force(2)', factors=-1, value=0, low=-8, high=8 /
 &initial coordinate=1, position=-10 /
 &time end=1, intervals=10 /
 """

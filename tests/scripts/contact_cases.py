@@ -1,4 +1,8 @@
-"""Data files of mechanisms whose contacts a motion cannot have."""
+"""Data files of mechanisms with contacts, most of which a motion cannot have, and runs of such files."""
+import json
+
+from mech9_cases import read_table, run
+
 SLIDING_POINT = """&structure cq=1 /
 &pair coordinate=1, links=1,2, kind='prismatic', axis=0,0,1 /
 &body link=2, mass=1 /
@@ -32,3 +36,18 @@ ROD = """&structure cq=1,2,3 /
 &contact point='A', friction=1.5 /
 &time end=1, intervals=10 /
 """
+
+
+def start(positions, rates):
+    """Groups &initial of all coordinates."""
+    return ''.join(f'&initial coordinate={i}, position={q!r}, velocity={dq!r} /\n' for i, (q, dq) in enumerate(zip(positions, rates), 1))
+
+
+def go(program, folder, text, end, intervals=20, code=0, options=()):
+    """Table, events and standard error of a run that ends with a code."""
+    path, table, report = folder / 'meet.nml', folder / 'meet.dat', folder / 'meet.json'
+    path.write_text(f'{text}&time end={end!r}, intervals={intervals} /\n', encoding='utf-8')
+    done = run(program, path, '--table', table, '--report', report, *options)
+    assert done.returncode == code, done.stderr
+    columns = read_table(table.read_text()) if code == 0 else None
+    return columns, json.loads(report.read_text()).get('events', []), done.stderr

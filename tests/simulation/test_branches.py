@@ -8,6 +8,7 @@ from math import acos, cos, pi, sin, sqrt
 import numpy as np
 import pytest
 
+import branch_cases
 from mech9_cases import read_table, run
 
 # a spring of k=100, l0=1 from (0.8, 0) to a slider at (0, q1), pushed down by F
@@ -41,16 +42,7 @@ PITCHFORK = """&structure cq=1 /
 &parameter name='P', sets='load(2).force(2)', factors=-1, value=1, low=0, high=10 /
 &initial coordinate=1, position=0 /
 """
-# masses 2 and 1 at the ends of rods of length 1, torsion springs 1, dampers c, a load along the second rod
-ZIEGLER = """&structure cq=1,2 /
-&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
-&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point=1,0,0 /
-&body link=2, mass=2, centre=1,0,0 /
-&body link=3, mass=1, centre=2,0,0 /
-&load kind='coordinate', coordinate=1, stiffness=1, damping=%r /
-&load kind='coordinate', coordinate=2, stiffness=1, damping=%r /
-&load kind='force', link=3, position=2,0,0, force=0,0,0, frame='link' /
-&parameter name='P', sets='load(3).force(1)', factors=-1, value=0.1, low=0, high=4 /
+ZIEGLER = branch_cases.ZIEGLER + """&parameter name='P', sets='load(3).force(1)', factors=-1, value=0.1, low=0, high=4 /
 &initial coordinate=1, position=0 /
 &initial coordinate=2, position=0 /
 """
@@ -73,22 +65,7 @@ TORQUE = """&structure cq=1 /
 &parameter name='T', sets='load(2).torque(3)', value=1, low=-20, high=20 /
 &initial coordinate=1, position=0 /
 """
-# crank 0.5 (q1), coupler 0.7 (q2 from the crank), rocker 0.6 about (1, 0.1); a torque T on q2 and a spring on q4
-FOUR_BAR = """&structure cq=1 /
-&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
-&pair coordinate=2, links=2,3, kind='revolute', point=0.5,0,0, axis=0,0,1 /
-&pair coordinate=3, links=3,4, kind='revolute', point=1.2,0,0, axis=0,0,1, moving_point=1.6,0.1,0 /
-&pair coordinate=4, links=1,4, kind='revolute', point=1,0.1,0, axis=0,0,1 /
-&initial coordinate=1, position=0.5 /
-&initial coordinate=2, position=0.3 /
-&initial coordinate=4, position=2 /
-&body link=2, mass=0.2, centre=0.1,0,0, inertia=0,0,0.001,0,0,0 /
-&body link=3, mass=0.5, centre=0.85,0,0, inertia=0,0,0.01,0,0,0 /
-&body link=4, mass=0.3, centre=1.3,0.1,0, inertia=0,0,0.03,0,0,0 /
-&load kind='coordinate', coordinate=4, stiffness=10, rest=2, damping=0.2 /
-&load kind='coordinate', coordinate=2, force=1 /
-&parameter name='T', sets='load(2).force', value=0, low=-60, high=60 /
-"""
+FOUR_BAR = '&structure cq=1 /\n' + branch_cases.FOUR_BAR
 # the same chain by its rocker: dead points where crank 0.2 and coupler 0.5 are in line
 ROCKER = """&structure cq=4 /
 &pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /

@@ -2,12 +2,12 @@
 contacts of moving links, closed chains, several contacts, compliant ones, paradox, driven motions, bad groups.
 
 Compares the program with itself: a contact and a stop; one four-bar by two coordinates; few and many outputs; one motion in another frame."""
-import json
 from math import asin, cos, hypot, pi, radians, sin, sqrt
 
 import numpy as np
 import pytest
 
+from contact_cases import go, start
 from mech9_cases import read_table, run
 
 G = 9.81
@@ -36,20 +36,6 @@ FOUR_BAR = """&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1, point=
 """
 STARTS = ("&structure cq=1 /\n&initial coordinate=1, position=1.2, velocity=0 /\n&initial coordinate=2, position=-0.3 /\n"
           '&initial coordinate=3, position=1 /\n&initial coordinate=4, position=1.8 /\n')
-
-
-def start(positions, rates):
-    return ''.join(f'&initial coordinate={i}, position={q!r}, velocity={dq!r} /\n' for i, (q, dq) in enumerate(zip(positions, rates), 1))
-
-
-def go(program, folder, text, end, intervals=20, code=0, options=()):
-    """Table, events and standard error of a run that ends with a code."""
-    path, table, report = folder / 'meet.nml', folder / 'meet.dat', folder / 'meet.json'
-    path.write_text(f'{text}&time end={end!r}, intervals={intervals} /\n', encoding='utf-8')
-    done = run(program, path, '--table', table, '--report', report, *options)
-    assert done.returncode == code, done.stderr
-    columns = read_table(table.read_text()) if code == 0 else None
-    return columns, json.loads(report.read_text()).get('events', []), done.stderr
 
 
 def kinds(events):

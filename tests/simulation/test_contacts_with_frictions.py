@@ -1,12 +1,12 @@
 """Contacts of links beside friction of pairs against closed forms: both slip, stick, and give way one after the other; impacts, power, and
 Coulomb's laws in a mechanism of three pairs and two contacts."""
-import json
 from math import cos, sin, sqrt
 
 import numpy as np
 import pytest
 
-from mech9_cases import read_table, run
+import contact_cases
+from contact_cases import start
 
 G = 9.81
 TIGHT = '&solver relative_tolerance=1e-10, absolute_tolerance=1e-12 /\n'
@@ -30,18 +30,9 @@ ON_TOP = """&structure cq=1,2,3 /
 """
 
 
-def start(positions, rates):
-    return ''.join(f'&initial coordinate={i}, position={q!r}, velocity={dq!r} /\n' for i, (q, dq) in enumerate(zip(positions, rates), 1))
-
-
-def go(program, folder, text, end, intervals=20, code=0, options=()):
-    """Table, events and standard error of a run that ends with a code."""
-    path, table, report = folder / 'both.nml', folder / 'both.dat', folder / 'both.json'
-    path.write_text(f'{text}{TIGHT}&time end={end!r}, intervals={intervals} /\n', encoding='utf-8')
-    done = run(program, path, '--table', table, '--report', report, *options)
-    assert done.returncode == code, done.stderr
-    columns = read_table(table.read_text()) if code == 0 else None
-    return columns, json.loads(report.read_text()).get('events', []), done.stderr
+def go(program, folder, text, *request):
+    """A run as of contact_cases, with tight tolerances."""
+    return contact_cases.go(program, folder, text + TIGHT, *request)
 
 
 def named(events):

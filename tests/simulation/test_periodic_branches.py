@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+import branch_cases
 from mech9_cases import read_table, run
 
 OSCILLATOR = """&structure cq=1 /
@@ -149,18 +150,8 @@ def test_refusals(checks, mech9d, tmp_path, text, name, code, words):
     checks.true(words in said, words, said)
 
 
-# a slider of 1 kg on a spring, with friction that falls with speed at first, a second one of 0.4 kg on it by spring and damper
-COUPLED = """&structure cq=1,2 /
-&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
-&pair coordinate=2, links=2,3, kind='prismatic', axis=1,0,0 /
-&initial coordinate=1, position=-1.3, velocity=-0.06 /
+COUPLED = branch_cases.SLIDERS + """&initial coordinate=1, position=-1.3, velocity=-0.06 /
 &initial coordinate=2, position=2.9, velocity=-1.9 /
-&body link=2, mass=1 /
-&body link=3, mass=0.4 /
-&load kind='coordinate', coordinate=1, stiffness=1 /
-&load kind='coordinate', coordinate=1, force=1, law='polynomial', coefficients=0,0.3,0,-0.1, over='dq1' /
-&load kind='coordinate', coordinate=2, stiffness=0.5, damping=0.1 /
-&load kind='coordinate', coordinate=1, force=1, law='harmonic', amplitude=1, angular_frequency=1.4 /
 &parameter name='f', sets='load(4).force', value=1, low=0.3, high=1.2 /
 &branch parameter='f', of='periodic' /
 &time end=1 /

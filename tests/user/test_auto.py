@@ -8,6 +8,7 @@ import shutil
 import numpy as np
 import pytest
 
+import branch_cases
 from mech9_cases import TREE, run
 
 AUTO = os.environ.get('AUTO_DIR', '/usr/lib/auto-07p')
@@ -21,29 +22,11 @@ SPRING = """&structure cq=1 /
 &parameter name='F', sets='load(2).force(2)', factors=-1, value=4 /
 """
 FOLD = 5.139077831551
-# the same bar as a closed chain in mm and degrees
-TRUSS = """&mechanism length_unit='mm', angle_unit='deg' /
-&structure cq=1 /
-&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1, point=-800,0,0 /
-&pair coordinate=2, links=2,3, kind='prismatic', axis=0.8,0.6,0, point=-400,300,0 /
-&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1, point=0,600,0 /
-&pair coordinate=4, links=1,4, kind='prismatic', axis=0,1,0 /
-&body link=4, mass=1 /
-&load kind='coordinate', coordinate=2, stiffness=0.1, damping=0.0005 /
-&load kind='force', link=4, position=0,600,0, force=0,0,0 /
-&parameter name='a_load_with_a_long_name', sets='load(2).force(2)', factors=-1, value=0 /
+TRUSS = branch_cases.TRUSS + """&parameter name='a_load_with_a_long_name', sets='load(2).force(2)', factors=-1, value=0 /
 &branch parameter='a_load_with_a_long_name', low=-8, high=8 /
 &initial coordinate=1, position=0 /
 """
-ZIEGLER = """&structure cq=1,2 /
-&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
-&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point=1,0,0 /
-&body link=2, mass=2, centre=1,0,0 /
-&body link=3, mass=1, centre=2,0,0 /
-&load kind='coordinate', coordinate=1, stiffness=1, damping=0.1 /
-&load kind='coordinate', coordinate=2, stiffness=1, damping=0.1 /
-&load kind='force', link=3, position=2,0,0, force=0,0,0, frame='link' /
-&parameter name='P', sets='load(3).force(1)', factors=-1, value=1 /
+ZIEGLER = branch_cases.ZIEGLER % (0.1, 0.1) + """&parameter name='P', sets='load(3).force(1)', factors=-1, value=1 /
 &parameter name='c', sets='load(1).damping', value=0.1, low=0, high=0.1 /
 &branch parameter='P', low=0.5, high=2 /
 &initial coordinate=1, position=0 /
@@ -60,39 +43,14 @@ DRIVEN = """&structure cq=1 /
 &parameter name='g', sets='load(2).force', value=1.03 /
 &branch parameter='g', low=0.9, high=1.07, of='periodic' /
 """
-# a self-excited slider under a force, and a second one on it; in numpy a pair of multipliers leaves the unit circle at the force TORUS
-# (tests/simulation/test_periodic_branches.py)
-SLIDERS = """&structure cq=1,2 /
-&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
-&pair coordinate=2, links=2,3, kind='prismatic', axis=1,0,0 /
-&initial coordinate=1, position=-1, velocity=-0.06 /
+# in numpy a pair of multipliers of the sliders leaves the unit circle at the force TORUS (tests/simulation/test_periodic_branches.py)
+SLIDERS = branch_cases.SLIDERS + """&initial coordinate=1, position=-1, velocity=-0.06 /
 &initial coordinate=2, position=2, velocity=-1.5 /
-&body link=2, mass=1 /
-&body link=3, mass=0.4 /
-&load kind='coordinate', coordinate=1, stiffness=1 /
-&load kind='coordinate', coordinate=1, force=1, law='polynomial', coefficients=0,0.3,0,-0.1, over='dq1' /
-&load kind='coordinate', coordinate=2, stiffness=0.5, damping=0.1 /
-&load kind='coordinate', coordinate=1, force=1, law='harmonic', amplitude=1, angular_frequency=1.4 /
 &parameter name='f', sets='load(4).force', value=0.6 /
 &branch parameter='f', low=0.4, high=0.7, of='periodic' /
 """
 TORUS = 0.530989588
-FOUR_BAR = """&structure cq=4 /
-&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
-&pair coordinate=2, links=2,3, kind='revolute', point=0.5,0,0, axis=0,0,1 /
-&pair coordinate=3, links=3,4, kind='revolute', point=1.2,0,0, axis=0,0,1, moving_point=1.6,0.1,0 /
-&pair coordinate=4, links=1,4, kind='revolute', point=1,0.1,0, axis=0,0,1 /
-&initial coordinate=1, position=0.5 /
-&initial coordinate=2, position=0.3 /
-&initial coordinate=4, position=2 /
-&body link=2, mass=0.2, centre=0.1,0,0, inertia=0,0,0.001,0,0,0 /
-&body link=3, mass=0.5, centre=0.85,0,0, inertia=0,0,0.01,0,0,0 /
-&body link=4, mass=0.3, centre=1.3,0.1,0, inertia=0,0,0.03,0,0,0 /
-&load kind='coordinate', coordinate=4, stiffness=10, rest=2, damping=0.2 /
-&load kind='coordinate', coordinate=2, force=1 /
-&parameter name='T', sets='load(2).force', value=0, low=-60, high=60 /
-&branch parameter='T' /
-"""
+FOUR_BAR = '&structure cq=4 /\n' + branch_cases.FOUR_BAR + "&branch parameter='T' /\n"
 # prints a column of the points of a kind
 TELL = """
 def tell(branch, kind, name):
