@@ -7,10 +7,11 @@ module mech9_directed_motion
   use mech9_request, only: output_settings_type
   use mech9_event_failures, only: failure_event_sensitivity
   use mech9_simulation_failures, only: failure_angles_sensitivity
+  use mech9_free_simulation, only: free_simulation_type
   use mech9_sensitivity_words, only: find_cause_at_event
   implicit none
   private
-  public :: set_directions, keep_motion_alone, explain_refusal
+  public :: set_directions, set_unit_directions, keep_motion_alone, explain_refusal
 
 contains
 
@@ -31,6 +32,27 @@ contains
     call keep_motion_alone(model%request%output)
     model%request%output%sensitivities = .true.
   end subroutine set_directions
+
+  !> Let each direction lie along one number of the state: a free coordinate, a rate, a state of a motor. Parameters change nothing.
+  subroutine set_unit_directions(simulation, unit, motors)
+    type(free_simulation_type), intent(inout) :: simulation   !< the motion, with room for directions
+    real(wp), intent(in) :: unit(:)                           !< (n) units of the free coordinates, and of their rates [rad, m]
+    integer, intent(in) :: motors(:)                          !< numbers of those that have a state
+    integer :: i, n
+
+    n = size(unit)
+    associate (sensitivity => simulation%motion%system%sensitivity)
+      sensitivity%values = 0.0_wp
+      sensitivity%motors = 0.0_wp
+      do i = 1, n
+        sensitivity%values(i, i, 0) = unit(i)
+        sensitivity%values(n + i, i, 1) = unit(i)
+      end do
+      do i = 1, size(motors)
+        sensitivity%motors(2*n + i, motors(i), 0) = 1.0_wp
+      end do
+    end associate
+  end subroutine set_unit_directions
 
   !> Leave out all results but the motion of all coordinates.
   pure subroutine keep_motion_alone(output)

@@ -13,6 +13,7 @@ module mech9_orbit_divergence
   use mech9_hermite, only: hermite_type, build_hermite
   use mech9_expectation, only: expectation_type
   use mech9_free_simulation, only: free_simulation_type
+  use mech9_directed_motion, only: set_unit_directions
   implicit none
   private
   public :: orbit_divergence_type
@@ -284,7 +285,7 @@ contains
         system%state%q = q
         system%state%dq = dq/h
         if (allocated(motors)) system%state%motor = self%states + two_places(i)*(motors - self%states)
-        call set_units(self, simulation)
+        call set_unit_directions(simulation, system%plan%unit_of(system%plan%free), self%motors)
         call system%close_near(from + two_places(i)*h, system%vector(), closed, failure)
         self%is_known = closed
         if (.not. closed) exit
@@ -323,32 +324,12 @@ contains
     type(error_type), allocatable, intent(out) :: err           !< allocated if it failed
 
     trace = 0.0_wp
-    call set_units(self, simulation)
     associate (system => simulation%motion%system)
+      call set_unit_directions(simulation, system%plan%unit_of(system%plan%free), self%motors)
       call system%sensitivity%find_accelerations(simulation%model, system%state, system%work, err)
     end associate
     if (.not. allocated(err)) trace = trace_of(self, simulation)
   end subroutine find_trace
-
-  !> Let each direction lie along one number of the state.
-  subroutine set_units(self, simulation)
-    class(orbit_divergence_type), intent(in) :: self            !< with the motors
-    type(free_simulation_type), intent(inout) :: simulation     !< the motion
-    integer :: i, n
-
-    associate (plan => simulation%motion%system%plan, sensitivity => simulation%motion%system%sensitivity)
-      n = size(plan%free)
-      sensitivity%values = 0.0_wp
-      sensitivity%motors = 0.0_wp
-      do i = 1, n
-        sensitivity%values(i, i, 0) = plan%unit_of(plan%free(i))
-        sensitivity%values(n + i, i, 1) = plan%unit_of(plan%free(i))
-      end do
-      do i = 1, size(self%motors)
-        sensitivity%motors(2*n + i, self%motors(i), 0) = 1.0_wp
-      end do
-    end associate
-  end subroutine set_units
 
   !> The trace of the derivatives by these directions [1/s].
   pure real(wp) function trace_of(self, simulation) result(trace)

@@ -7,23 +7,21 @@
 !> Parameters of the model may follow, by which the state at the end has derivatives, too.
 module mech9_period_map
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, exit_assembly
+  use mech9_error, only: error_type
   use mech9_parameter, only: parameter_type
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
-  use mech9_law, only: drive_slot_type
   use mech9_state, only: state_type, copy_state
   use mech9_frame_motion, only: place_all
   use mech9_branch_stepping, only: set_inputs
   use mech9_motor_states, only: start_motors, find_limits
   use mech9_motion_view, only: unlocked
-  use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance_driven => advance
-  use mech9_straight_drives, only: straight_drives
+  use mech9_nearby_position, only: find_nearby_position
   use mech9_sensitivity, only: sensitivity_type
   use mech9_simulation, only: interruption_type
   use mech9_free_simulation, only: free_simulation_type
   use mech9_model_motion, only: model_motion_type
-  use mech9_directed_motion, only: set_directions
+  use mech9_directed_motion, only: set_directions, set_unit_directions
   use mech9_orbit_divergence, only: orbit_divergence_type
   implicit none
   private
@@ -192,7 +190,7 @@ contains
         simulation => self%motion%free()
         call simulation%begin_sensitivity(self%variable, 2, unused, err)
       end if
-      if (.not. allocated(err)) call set_identity(self, simulation)
+      if (.not. allocated(err)) call set_unit_directions(simulation, self%unit_of(:size(self%free)), self%motors)
       if (.not. allocated(err)) call begin_motion(self, simulation, err)
       if (.not. allocated(err)) call take_start(self, simulation)
       if (.not. allocated(err)) call follow(self, simulation, follows, err)
@@ -263,33 +261,16 @@ contains
     real(wp), intent(in) :: t                           !< time [s]
     type(error_type), allocatable, intent(out) :: err   !< allocated if the chains do not close there
     type(state_type) :: moved
-    type(drive_slot_type), allocatable :: drives(:)
-    type(driven_motion_type) :: driven
-    real(wp), dimension(size(self%start%q)) :: q, dq, ddq
+    real(wp) :: q(size(self%start%q))
     integer :: n
 
     n = size(self%free)
     associate (plan => self%motion%plan)
-      call copy_state(self%start, moved)
-      q = moved%q
-      dq = 0.0_wp
-      ddq = 0.0_wp
-      q(self%free) = x(:n)
-      call set_inputs(self%model%problem%drives, t, q, dq, ddq, err)
+      call find_nearby_position(self%model%problem%drives, plan, self%start, self%free, x(:n), t, &
+                                'the chains do not close at a start that the search for a periodic motion tries', q, err)
       if (allocated(err)) return
-      if (size(plan%closures) > 0 .and. any(abs(q(plan%independent) - moved%q(plan%independent)) > 0.0_wp)) then
-        call straight_drives(plan%independent, moved%q(plan%independent), q(plan%independent) - moved%q(plan%independent), drives)
-        call start_driven_motion(drives, plan, moved, 0.0_wp, driven, err, derivatives=1)
-        if (.not. allocated(err)) call advance_driven(drives, plan, driven, 1.0_wp, err)
-        if (allocated(err)) then
-          call raise(err, exit_assembly, 'the chains do not close at a start that the search for a periodic motion tries')
-          return
-        end if
-        moved%q = driven%state%q
-        moved%q(plan%independent) = q(plan%independent)
-      else
-        moved%q = q
-      end if
+      call copy_state(self%start, moved)
+      moved%q = q
       moved%t = t
       moved%dq(self%free) = x(n + 1:2*n)
       if (size(self%motors) > 0) moved%motor(self%motors) = x(2*n + 1:)
@@ -300,26 +281,6 @@ contains
       if (.not. allocated(err)) call copy_state(moved, self%start)
     end associate
   end subroutine place_start
-
-  !> Let each direction begin along one number of the state, and parameters without any change of the state.
-  subroutine set_identity(self, simulation)
-    class(period_map_type), intent(in) :: self                  !< the map
-    type(free_simulation_type), intent(inout) :: simulation     !< the motion, with room for directions
-    integer :: i, n
-
-    n = size(self%free)
-    associate (sensitivity => simulation%motion%system%sensitivity)
-      sensitivity%values = 0.0_wp
-      sensitivity%motors = 0.0_wp
-      do i = 1, n
-        sensitivity%values(i, i, 0) = self%unit_of(i)
-        sensitivity%values(n + i, i, 1) = self%unit_of(n + i)
-      end do
-      do i = 1, size(self%motors)
-        sensitivity%motors(2*n + i, self%motors(i), 0) = 1.0_wp
-      end do
-    end associate
-  end subroutine set_identity
 
   !> Take the state at the start and its derivative in time.
   subroutine take_start(self, simulation)

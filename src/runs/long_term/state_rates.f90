@@ -12,15 +12,13 @@ module mech9_state_rates
   use mech9_partition, only: free_coordinate
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
-  use mech9_law, only: drive_slot_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_frame_motion, only: place_all
   use mech9_branch_stepping, only: set_inputs
   use mech9_motor_states, only: start_motors, find_limits
   use mech9_motion_view, only: unlocked
-  use mech9_straight_drives, only: straight_drives
-  use mech9_driven_motion, only: driven_motion_type, start_driven_motion, advance_driven => advance
+  use mech9_nearby_position, only: find_nearby_position
   use mech9_resting_plan, only: plan_by_geometry
   use mech9_planning, only: planning_settings_type, make_plan
   use mech9_motion_in_space, only: refuse_singular_chains
@@ -282,33 +280,15 @@ contains
     real(wp), intent(in) :: free(:)                     !< (n) the free coordinates [rad, m]
     real(wp), intent(in) :: t                           !< time of the drives [s]
     type(error_type), allocatable, intent(out) :: err   !< allocated if the chains do not close
-    type(drive_slot_type), allocatable :: drives(:)
-    type(driven_motion_type) :: driven
-    real(wp), dimension(size(self%state%q)) :: q, dq, ddq
+    real(wp) :: q(size(self%state%q))
 
-    dq = 0.0_wp
-    ddq = 0.0_wp
-    associate (plan => self%plan, state => self%state)
-      q = state%q
-      q(self%free) = free
-      call set_inputs(self%model%problem%drives, t, q, dq, ddq, err)
-      if (allocated(err)) return
-      if (size(plan%closures) > 0 .and. any(abs(q(plan%independent) - state%q(plan%independent)) > 0.0_wp)) then
-        call straight_drives(plan%independent, state%q(plan%independent), q(plan%independent) - state%q(plan%independent), drives)
-        call start_driven_motion(drives, plan, state, 0.0_wp, driven, err, derivatives=1)
-        if (.not. allocated(err)) call advance_driven(drives, plan, driven, 1.0_wp, err)
-        if (allocated(err)) then
-          call raise(err, exit_assembly, 'the chains do not close on the way to this position, or become singular in the '// &
-                     'independent coordinates; other ones in &structure cq may serve')
-          return
-        end if
-        driven%state%q(plan%independent) = q(plan%independent)
-        q = driven%state%q
-      end if
-      state%q = q
-      state%t = t
-      call place_all(plan, state, err)
-    end associate
+    call find_nearby_position(self%model%problem%drives, self%plan, self%state, self%free, free, t, &
+                              'the chains do not close on the way to this position, or become singular in the independent '// &
+                              'coordinates; other ones in &structure cq may serve', q, err)
+    if (allocated(err)) return
+    self%state%q = q
+    self%state%t = t
+    call place_all(self%plan, self%state, err)
   end subroutine move_to
 
   !> Set the rates of the independent coordinates; the free ones have no accelerations yet.
