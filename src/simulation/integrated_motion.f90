@@ -369,7 +369,7 @@ contains
     class(integrated_motion_type), intent(inout) :: self   !< the motion
     integer, intent(in) :: met                             !< number of the end that is met, left or released; 0: none
     integer, intent(in) :: friction                        !< number of the friction that changes; 0: none
-    integer, intent(inout) :: rubbing      !< number of the contact of links whose friction changes; then 0 if it came to rest; 0: none
+    integer, intent(inout) :: rubbing      !< number of the contact of links whose friction changes; 0: none, or it came to rest
     real(wp), intent(in) :: of_held(:)                     !< (M) rates that held coordinates would have if nothing held them [rad/s, m/s]
     logical, intent(in) :: at_start                        !< there was no step yet
     type(motion_events_type), intent(inout) :: events      !< gets impacts, stops that close and open, and pairs that stick and slip

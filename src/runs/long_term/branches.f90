@@ -168,7 +168,7 @@ contains
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
     logical, intent(in), optional :: own_period               !< motions may have a period of their own; not unless given
     type(law_period_type) :: laws
-    logical :: any_free
+    logical :: any_free, needs_law
 
     if (any(parameter%name == [character(len=6) :: 'branch', 'point', 'growth', 'type']) .or. is_heading(model, parameter%name)) &
       call raise(err, exit_data, 'the table of branches has a column '''//parameter%name//''' of its own; give the parameter '// &
@@ -195,8 +195,9 @@ contains
       call refuse_parts(model, err)
     else if (request%of == 'periodic') then
       call find_law_period(model, laws, err)
-      if (present(own_period)) return
-      if (.not. (allocated(err) .or. laws%follows_time)) &
+      needs_law = .true.
+      if (present(own_period)) needs_law = .not. own_period
+      if (needs_law .and. .not. (allocated(err) .or. laws%follows_time)) &
         call raise(err, exit_data, 'no drive, load or motor follows time, and branches of periodic motions with a period of '// &
                    'their own are not known; --periodic finds single ones', request%place)
     end if

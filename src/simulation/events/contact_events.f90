@@ -58,7 +58,8 @@ contains
   subroutine meet_contacts(system, met, rubbing, of_held, contacts, impulses, changes, impact, holds_change, events, err, again)
     class(motion_system_type), intent(inout) :: system                     !< the system, moved to the time, with all rates
     integer, intent(in) :: met                                             !< number of the end that is met or left; 0: none
-    integer, intent(inout) :: rubbing              !< number of the contact of links that comes to rest or can stick no longer; then 0 in the first case; 0: none
+    integer, intent(inout) :: rubbing              !< number of the contact of links that comes to rest or can stick no longer; 0: none.
+                                                   !< It is 0 afterwards where the contact came to rest
     real(wp), intent(in) :: of_held(:)                                     !< (M) rates that held coordinates would have if nothing held them
     type(stop_contacts_type), intent(inout) :: contacts                    !< all ends; those that are closed and held change
     real(wp), intent(out) :: impulses(:)                                   !< (M) on coordinates, positive while they grow [N m s, N s]
@@ -67,7 +68,7 @@ contains
     logical, intent(out) :: holds_change                                   !< other coordinates are to be held
     type(motion_events_type), intent(inout) :: events                      !< gets the events
     type(error_type), allocatable, intent(out) :: err                      !< allocated if it failed
-    logical, intent(in), optional :: again         !< they were met at this time, and `rubbing` can stick no longer; not unless present
+    logical, intent(in), optional :: again         !< they were met at this time, and `rubbing` can stick no longer; not unless given
     integer, allocatable :: touch(:)
     real(wp), allocatable :: by_contact(:, :), ends_after(:)
     type(contact_outcome_type) :: outcome
@@ -96,7 +97,8 @@ contains
     changes = -system%state%dq
     system%state%dq = system%state%dq + of_held
     comes_to_rest = .false.
-    if (rubbing > 0) comes_to_rest = .not. (system%contact%sticks(rubbing) .or. present(again))
+    if (rubbing > 0) comes_to_rest = .not. system%contact%sticks(rubbing)
+    if (present(again)) comes_to_rest = comes_to_rest .and. .not. again
     if (comes_to_rest) call bring_to_rest(system, rubbing, err)
     if (allocated(err)) return
     if (comes_to_rest) rubbing = 0
