@@ -50,6 +50,7 @@ def test_several_templates_in_one_program(checks, link, tmp_path, options, names
 WRONG = ((0, 'mech9-link -o NAME FILE...', ['--help']),
          (0, 'mech9-link 0.', ['--version']),
          (2, 'no name given', ['SAMPLES/trammel/trammel.f90']),
+         (2, 'mech9-link --auto mechanism.nml -o rig', ['--auto', 'mechanism.nml']),
          (2, 'no file given', ['-o', 'none']),
          (2, '-o needs a name', ['-o']),
          (2, 'unknown option --fast', ['--fast', '-o', 'none', 'SAMPLES/trammel/trammel.f90']),
