@@ -1,8 +1,8 @@
 !> The forces of stops, dry friction and contacts, one by one, for pictures.
 !>
 !> Stops and frictions work on a coordinate; a coordinate whose pair turns has a torque about the axis, one whose pair slides, or follows
-!> a curve, a force along it. Friction in a thread has both: it acts along the thread, whose mean radius is known. Both are part of the
-!> wrench of their pair (mech9_reactions). Contacts act between links that no pair needs to join; their forces begin where the bodies
+!> a curve, a force along it. A user's pair is judged in each position: it has a torque where its link turns, else a force. Friction in
+!> a thread has both: it acts along the thread, whose mean radius is known. Both are part of the wrench of their pair (mech9_reactions). Contacts act between links that no pair needs to join; their forces begin where the bodies
 !> touch.
 module mech9_touching_forces
   use mech9_kinds, only: wp
@@ -18,6 +18,9 @@ module mech9_touching_forces
   private
   public :: touching_force_type, touching_forces_type, new_touching_forces, from_stop, from_friction, from_contact
 
+  !> A user's pair slides where it turns by less than this part of a radian for each metre.
+  real(wp), parameter :: least_turn = 1.0e-9_wp
+
   !> Sources of a force.
   integer, parameter :: from_stop = 1, from_friction = 2, from_contact = 3
 
@@ -28,6 +31,7 @@ module mech9_touching_forces
     logical :: is_torque = .false.      !< a torque [N m], no force [N]
     integer :: link = 1                 !< on which it acts
     real(wp) :: foot(3) = 0.0_wp        !< the point at which it acts, in the link's system; not of contacts [m]
+    logical :: of_user = .false.        !< in a user's pair: zero where that turns and this is a force, and the other way round
     real(wp) :: share = 1.0_wp          !< vector by the force on the coordinate; of a contact 1 on the ball, -1 on the surface
   end type touching_force_type
 
@@ -68,8 +72,8 @@ contains
     end do
   end subroutine new_touching_forces
 
-  !> Append the force of a stop or a friction on the moving link of its pair. A user's pair that both turns and moves along has none,
-  !> since nothing tells how.
+  !> Append the force of a stop or a friction on the moving link of its pair. A user's pair has a torque and a force, of which one is
+  !> zero in each position.
   subroutine append_of_coordinate(mechanism, source, number, coordinate, self)
     type(mechanism_type), intent(in) :: mechanism           !< the mechanism
     integer, intent(in) :: source                           !< from_stop or from_friction
@@ -86,8 +90,10 @@ contains
         if (source == from_friction) then
           associate (friction => mechanism%frictions(number))
             square = friction%radius**2 + friction%lead**2
-            call append(touching_force_type(source, number, .true., link, axes%points(:, 2), friction%radius**2/square), self)
-            call append(touching_force_type(source, number, .false., link, axes%points(:, 2), friction%lead/square), self)
+            call append(touching_force_type(source, number, .true., link, axes%points(:, 2), &
+                                          share=friction%radius**2/square), self)
+            call append(touching_force_type(source, number, .false., link, axes%points(:, 2), &
+                                          share=friction%lead/square), self)
           end associate
         else
           call append(touching_force_type(source, number, .true., link, axes%points(:, 2)), self)
@@ -95,8 +101,12 @@ contains
       case (sliding)
         call append(touching_force_type(source, number, .false., link, axes%points(:, 2)), self)
       case (free)
-        if (size(axes%guide, 2) > 0) &
+        if (size(axes%guide, 2) > 0) then
           call append(touching_force_type(source, number, .false., link, axes%points(:, 2)), self)
+        else
+          call append(touching_force_type(source, number, .true., link, axes%points(:, 2), of_user=.true.), self)
+          call append(touching_force_type(source, number, .false., link, axes%points(:, 2), of_user=.true.), self)
+        end if
       end select
     end associate
   end subroutine append_of_coordinate
@@ -128,15 +138,14 @@ contains
       associate (item => self%items(i))
         select case (item%source)
         case (from_stop)
-          vectors(:, i) = item%share*stop_force(mechanism, item%number, state)* &
-                          direction(self%axes(mechanism%stops(item%number)%coordinate), plan, state, &
-                                    mechanism%stops(item%number)%coordinate)
+          vectors(:, i) = stop_force(mechanism, item%number, state)
+          call turn_along(self%axes(mechanism%stops(item%number)%coordinate), plan, state, &
+                          mechanism%stops(item%number)%coordinate, item, vectors(:, i))
         case (from_friction)
           vectors(:, i) = 0.0_wp
-          if (allocated(state%friction)) &
-            vectors(:, i) = item%share*state%friction(item%number)* &
-                            direction(self%axes(mechanism%frictions(item%number)%coordinate), plan, state, &
-                                      mechanism%frictions(item%number)%coordinate)
+          if (allocated(state%friction)) vectors(:, i) = state%friction(item%number)
+          call turn_along(self%axes(mechanism%frictions(item%number)%coordinate), plan, state, &
+                          mechanism%frictions(item%number)%coordinate, item, vectors(:, i))
         case default
           call find_contact(mechanism, item%number, plan, state, vectors(:, i), feet(:, i))
           vectors(:, i) = item%share*vectors(:, i)
@@ -163,14 +172,16 @@ contains
     end associate
   end function stop_force
 
-  !> The direction in which a positive force on a coordinate turns or moves the moving link of its pair, in the axes of link 1.
-  function direction(axes, plan, state, coordinate) result(along)
-    type(pair_axes_type), intent(in) :: axes      !< of the pair
-    type(plan_type), intent(in) :: plan           !< the plan of the mechanism
-    type(state_type), intent(in) :: state         !< with the poses of the frames
-    integer, intent(in) :: coordinate             !< number of the coordinate
-    real(wp) :: along(3)
-    real(wp) :: r(3, 3), p(3), omega(3), v(3), w(3)
+  !> Turn the force on a coordinate, in each component at first, into the force or torque on the moving link of its pair. Both do the
+  !> same work, also where a user's coordinate is no angle and no length.
+  pure subroutine turn_along(axes, plan, state, coordinate, item, vector)
+    type(pair_axes_type), intent(in) :: axes        !< of the pair
+    type(plan_type), intent(in) :: plan             !< the plan of the mechanism
+    type(state_type), intent(in) :: state           !< with the poses of the frames
+    integer, intent(in) :: coordinate               !< number of the coordinate
+    type(touching_force_type), intent(in) :: item   !< a force or a torque, with its share
+    real(wp), intent(inout) :: vector(3)            !< the force on the coordinate; then [N, N m], in the axes of link 1
+    real(wp) :: r(3, 3), p(3), omega(3), v(3), w(3), along(3)
     integer :: s
 
     call link_motion(plan, state, axes%links(2), r, p, omega, v)
@@ -179,13 +190,35 @@ contains
     else if (any(abs(axes%tangent) > 0.0_wp)) then
       along = turn(r, axes%tangent)
     else
-      ! the moving link does not turn along the curve, so that all its points move along the tangent
+      ! a link that does not turn moves with all its points in one direction
       s = findloc(plan%steps%coordinate, coordinate, dim=1)
       call step_screw(plan, state, s, w, v, p)
+      if (plan%steps(s)%reversed) then
+        w = -w
+        v = -v
+      end if
       along = unit(v)
-      if (plan%steps(s)%reversed) along = -along
+      if (item%of_user) along = of_same_work(w, v, item%is_torque)
     end if
-  end function direction
+    vector = item%share*vector*along
+  end subroutine turn_along
+
+  !> The torque, or the force, that works as a force of one unit on a user's coordinate does: a torque where the link turns.
+  pure function of_same_work(w, v, is_torque) result(along)
+    real(wp), intent(in) :: w(3)          !< angular velocity per unit rate [rad per unit of q]
+    real(wp), intent(in) :: v(3)          !< velocity per unit rate [m per unit of q]
+    logical, intent(in) :: is_torque      !< the torque is asked for
+    real(wp) :: along(3)
+    real(wp) :: square
+    logical :: turns
+
+    along = 0.0_wp
+    turns = norm2(w) > least_turn*norm2(v)
+    if (turns .neqv. is_torque) return
+    along = merge(w, v, turns)
+    square = sum(along**2)
+    if (square > 0.0_wp) along = along/square
+  end function of_same_work
 
   !> The force of a contact on its ball, and where the bodies touch; no force where it is open.
   subroutine find_contact(mechanism, number, plan, state, force, at)

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from mech9_cases import TREE, table_of, tolerance_of
+from svg_pictures import SVG, picture_of
 
 WEIGHT = ("&structure cq=1 / &pair coordinate=1, links=1,2, kind='prismatic', axis=0,0,-1 / &body link=2, mass=2 / "
           "&gravity acceleration=0,0,-9.81 / &load kind='user' / &initial coordinate=1, position=0, velocity=0 / "
@@ -387,3 +388,21 @@ def test_exceptions_in_simulations_are_shown(mech9, falling):
             many.code = [0, 0, 0]
     with pytest.raises(mech9.UsageError):
         many.t
+
+
+@pytest.mark.parametrize('turns', (True, False))
+def test_arrow_of_a_stop(checks, mech9, turns):
+    """A stop on a user's coordinate, three of which make one radian or one metre: its arrow is the torque, or the force, that holds the link."""
+    m = mech9.read_text("&structure cq=1 / &pair coordinate=1, links=1,2, kind='user' / &body link=2, mass=2, centre=0.4,0,0 / "
+                        "&gravity acceleration=0,-9.81,0 / &stop coordinate=1, low=0.3 / &initial coordinate=1, position=0.3 / "
+                        "&output force_arrows=.true. / &time end=0.1, intervals=2 /")
+    about = np.array([0.1, 0.2, 0])
+
+    @m.pair
+    def arm(coordinate, q, parameters):
+        c, s = (math.cos(q/3), math.sin(q/3)) if turns else (1, 0)
+        origin = about + [0, 0 if turns else q/3, 0]
+        return [origin, origin + [c, s, 0], origin + [-s, c, 0]]
+    titles = [one.findtext(SVG + 'title') for one in picture_of(m.animate(dynamics=True).text).iter(SVG + 'g') if one.get('class') == 'touching']
+    size = 2*9.81*(0.4*math.cos(0.1) if turns else 1)
+    checks.equal(titles, [f"stop 1: {'torque' if turns else 'force'} in pair 1, at most {size:.4g} {'N m' if turns else 'N'}"], 'the arrow')
