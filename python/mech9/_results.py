@@ -93,7 +93,7 @@ class Results(Mapping[str, np.ndarray]):
     def report(self) -> dict[str, Any]:
         """How a run ended and the work that it took, or what was found of a cam, as the option --report writes it.
 
-        That of equilibria, modes, assemblies and ranges has the names of links and coordinates; other analyses have none."""
+        That of equilibria, modes, assemblies, ranges and cams has the names of links and coordinates; other analyses have none."""
         return dict(json.loads(lib.results_text(self._memory.handle) or b'{}'))
 
     @property

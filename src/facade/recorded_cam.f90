@@ -10,6 +10,7 @@ module mech9_recorded_cam
   use mech9_cam_profile, only: cam_profile_type, find_profile
   use mech9_cam_rows, only: list_cam_rows
   use mech9_cam_text, only: judge_cam
+  use mech9_report_parts, only: add_part_names
   use mech9_cam_report, only: add_cam
   use mech9_model_motion, only: model_motion_type
   use mech9_checked_mechanism, only: checked_mechanism_type
@@ -27,7 +28,7 @@ contains
     character(len=:), allocatable, intent(out) :: names(:)         !< (columns) as --cam writes them
     character(len=:), allocatable, intent(out) :: units(:)         !< (columns)
     real(wp), allocatable, intent(out) :: rows(:, :)               !< (columns,rows); none after a failure
-    character(len=:), allocatable, intent(out) :: report           !< JSON, as in the list `cams` of a report
+    character(len=:), allocatable, intent(out) :: report           !< JSON, as in the list `cams` of a report, with names
     type(error_type), allocatable, intent(out) :: err              !< allocated if it failed
     type(model_type), target :: model
     type(model_motion_type), target :: motion
@@ -51,7 +52,10 @@ contains
       allocate (texts(0), of_units(0), rows(0, 0))
     else
       call list_cam_rows(model%mechanism, model%request%cams(number), profile, texts, of_units, rows)
+      call json%begin_object()
+      call add_part_names(json, model)
       call add_cam(json, model, number, profile)
+      call json%end_object()
       call json%take_text(report)
     end if
     call texts_of_one_length(texts, names)

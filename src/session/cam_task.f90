@@ -55,7 +55,9 @@ contains
         call add_place(err, place=cam%place)
         if (allocated(err)) return
         if (.not. options%has('quiet')) call print_cam(error_unit, model, k, profile)
+        call json%begin_object()
         call add_cam(json, model, k, profile)
+        call json%end_object()
         do i = 1, size(files)
           if (files(i)%number /= k) cycle
           if (files(i)%is_picture) then

@@ -360,6 +360,10 @@ def test_cams(checks, build, mech9, tmp_path):
     for name in theirs:
         checks.near(profile[name], theirs[name], 0.0, f'{name} of the profile')
     checks.equal(profile.report, told, 'the entry of the report')
+    shaft = told['coordinate']
+    copy = tmp_path / 'named.nml'
+    copy.write_text(text_of(path).replace(f'&pair coordinate={shaft},', f"&pair coordinate={shaft}, name='shaft',", 1), encoding='utf-8')
+    checks.near(mech9.read(copy).cam()['shaft.q'], profile[f'q{shaft}'], 0.0, 'a column by the name of its pair')
     with pytest.raises(mech9.UsageError, match='there is no cam 3; this mechanism has 2 cams'):
         m.cam(3)
 

@@ -14,16 +14,15 @@ module mech9_cam_report
 
 contains
 
-  !> Add a cam to an array. Values that it does not have are left out: a radius where no part is convex, a contact without a face.
+  !> Add the values of a cam to an object. Values that it does not have are left out: a radius where no part is convex, a contact without a face.
   subroutine add_cam(json, model, number, profile)
-    type(json_type), intent(inout) :: json          !< the report, in the array of cams
+    type(json_type), intent(inout) :: json          !< the report, in the object of this cam
     type(model_type), intent(in) :: model           !< the model
     integer, intent(in) :: number                   !< of the cam
     type(cam_profile_type), intent(in) :: profile   !< its profile
     integer :: i
 
     associate (cam => model%request%cams(number), contacts => profile%contacts, length => model%mechanism%units%length)
-      call json%begin_object()
       call json%add('cam', number)
       call json%add('link', cam%link)
       call json%add('follower', cam%follower)
@@ -52,7 +51,6 @@ contains
         call json%end_object()
       end do
       call json%end_array()
-      call json%end_object()
     end associate
   contains
     !> Add an extreme value with its place.
