@@ -29,6 +29,7 @@ module mech9_structure_reader
     type(span_type) :: n_links_span, n_coordinates_span
     integer, allocatable :: pairs(:)  !< numbers of the sound groups &pair
     logical :: all_pairs = .false.    !< whether no pair has an error
+    logical :: count_is_known = .true.   !< the number of coordinates does not depend on pairs that have errors
     type(matrix_type) :: matrix
     type(compound_joint_type), allocatable :: joints(:)   !< joints with several freedoms, without numbers of their own links
     !> (2,M) links of each coordinate's pair; 0 where it has none, or where the first coordinate of its joint stands for it.
@@ -161,6 +162,7 @@ contains
       return
     end if
     n = data%n_coordinates
+    data%count_is_known = n > 0 .or. data%all_pairs
     if (n == 0) n = size(data%pairs) + sum(data%joints%freedoms - 1)
     call take_pairs(document, n, data, diagnostics)
     if (.not. data%all_pairs .or. any(data%group_of_pair == 0)) return
@@ -350,7 +352,7 @@ contains
         do j = 1, size(coordinates)
           k = coordinates(j)
           if (k > m) then
-            call diagnostics%add(coordinate_span(group, j), 'there is no coordinate '//to_text(k)// &
+            if (data%count_is_known) call diagnostics%add(coordinate_span(group, j), 'there is no coordinate '//to_text(k)// &
                                  '; they are 1 to '//to_text(m), exit_structure)
           else
             if (j == 1) data%links(:, k) = get_integers(group, 'links')

@@ -278,6 +278,9 @@ contains
     end do
     if (plain == '') plain = default
     if (default /= 'point' .and. scan(plain(1:1), '0123456789') == 1) plain = '_'//plain
+    ! columns of links begin with L2, those of pairs with R2
+    if (any(default//plain(1:1) == [character(len=5) :: 'linkL', 'pairR']) .and. verify(plain(2:), '0123456789') == 0) &
+      plain = plain//'_'
     free = plain
     tail = max(1, names%tails%find(plain))
     do while (names%taken%find(free) > 0)

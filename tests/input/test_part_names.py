@@ -126,6 +126,8 @@ def test_set_finds_groups_by_their_names(checks, mech9k, tmp_path):
     (("name='B'", "name='" + 41 * 'x' + "'"), 'at most 40 of them', "'xxx"),
     (("number=4, name='rocker'", "number=2, name='rocker'"), 'a second &link for number 2', '2'),
     (("&link number=2, name", "&link number=5, name"), 'link 2 is not connected to link 1 (base)', '&structure'),
+    (("name='rocker' /", "name='L2' /"), 'begin with L2; give another name', "'L2'"),
+    (("name='B'", "name='R3'"), 'begin with R3; give another name', "'R3'"),
     (("links='base','crank'", "links='base',crank"), "'links' takes whole numbers, and crank is none", 'crank'),
     (("moving_point=0.8,0,0", "moving_point=9,0,0"), '', ''),
 ))
@@ -140,3 +142,24 @@ def test_wrong_names_are_told_with_their_place(checks, mech9k, tmp_path, change,
     lines = done.stderr.splitlines()
     at = next(i for i, line in enumerate(lines) if words in line)
     checks.true(lines[at + 1][lines[at + 2].index('^'):].startswith(caret), f'the place of {words}: {done.stderr}')
+
+
+def test_one_wrong_name_is_one_error(checks, mech9k, tmp_path):
+    """A wrong link does not make the number of coordinates wrong, and a second group for a link takes no name away."""
+    text = named(TEXT + DRIVE).replace('&cam', '!&cam')
+    for change, words in ((("links='base','crank'", "links='base','crnk'"), 'there is no link with the name'),
+                          (("&structure", "&link number=2, name='arm' /\n&structure"), 'a second &link for number 2')):
+        done = run(mech9k, write(tmp_path, text.replace(*change, 1)), '--check')
+        told = [line for line in done.stderr.splitlines() if line.startswith(str(tmp_path))]
+        checks.true(done.returncode == DATA and len(told) == 1 and words in told[0], f'{change[1]}: one error', done.stderr)
+    # the name of its own columns is allowed
+    done = run(mech9k, write(tmp_path, text.replace("'rocker'", "'L4'").replace("'B'", "'R2'")), '--check')
+    checks.equal(done.returncode, DONE, done.stderr)
+
+
+def test_values_of_coordinates_have_names(checks, mech9k, tmp_path):
+    """The crank of a double rocker comes to a dead point: the message tells the value of the coordinate with its name."""
+    text = named(TEXT + DRIVE).replace('&cam', '!&cam').replace('&output', '!&output')
+    text = text.replace('point=0.9,0,0', 'point=1.9,0,0').replace('point=0.3,0,0', 'point=0.6,0,0')
+    done = run(mech9k, write(tmp_path, text), '--table', os.devnull, '--set', 'time.end=2')
+    checks.true(done.returncode == 6 and ' at q1 (A) = ' in done.stderr, 'the dead point is told', done.stderr)

@@ -74,6 +74,8 @@ contains
       do i = 1, size(numbers)
         if (numbers(i) < 1 .or. numbers(i) > most) cycle
         call lengthen(list, numbers(i))
+        ! a second group for a number is reported as such, so that the first name still means it
+        if (list(numbers(i)) /= '') cycle
         list(numbers(i)) = values(1)%text
         if (size(numbers) > 1) list(numbers(i)) = values(1)%text//'('//to_text(i)//')'
       end do
@@ -98,12 +100,33 @@ contains
                              printable(name, longest_part_name)//'''')
         return
       end if
+      if (is_of_another(document%groups(number), name)) then
+        call diagnostics%add(span, 'columns of '//group//' '//name(2:)//' begin with '//name//'; give another name')
+        is_right = .false.
+        return
+      end if
       if (owner == 0) return
       call diagnostics%add(span, 'a second '//group//' has the name '''//name//''''// &
                            trim(line_of(document%groups(owner), diagnostics)))
       is_right = .false.
     end associate
   end subroutine judge_name
+
+  !> Whether a name begins columns of another part: L2 those of link 2, R2 those of pair 2.
+  pure logical function is_of_another(group, name)
+    type(group_type), intent(in) :: group     !< &link or &pair with this name
+    character(len=*), intent(in) :: name      !< the name
+    integer, allocatable :: numbers(:)
+    character(len=1) :: letter
+
+    letter = merge('L', 'R', group%name == 'link')
+    is_of_another = .false.
+    if (len(name) < 2) return
+    if (name(1:1) /= letter .or. verify(name(2:), '0123456789') > 0) return
+    numbers = numbers_under(group, trim(merge('number    ', 'coordinate', group%name == 'link')))
+    is_of_another = .true.
+    if (size(numbers) > 0) is_of_another = name(2:) /= to_text(numbers(1))
+  end function is_of_another
 
   !> Whether a text may be the name of a part.
   pure logical function is_part_name(name)
