@@ -6,7 +6,8 @@ module mech9_output_reader
   use mech9_turning_plane, only: turning_plane_type, find_turning_plane
   use mech9_request, only: output_settings_type
   use mech9_document, only: document_type, group_type
-  use mech9_lookup, only: group_or_empty, groups_named, get_integer, get_integers, get_logical, get_text, has_name, span_of
+  use mech9_lookup, only: group_or_empty, groups_named, has_group, has_unsound, get_integer, get_integers, get_logical, get_text, &
+    has_name, span_of
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
@@ -157,9 +158,12 @@ contains
     quantities = groups_named(document, 'quantity')
     do i = 1, size(requests)
       if (.not. get_logical(group, trim(requests(i)))) cycle
-      if (n_parameters == 0) then
+      if (n_parameters == 0 .and. has_unsound(document, 'parameter')) then
+        cycle
+      else if (n_parameters == 0) then
         call diagnostics%add(span_of(group, trim(requests(i)), 1), trim(requests(i))//' are derivatives by the parameters, '// &
-                             'and there are none; give a group &parameter for each')
+                             trim(merge('and all of them have formulas; give one a value     ', &
+                                        'and there are none; give a group &parameter for each', has_group(document, 'parameter'))))
       else if (i == 2 .and. size(quantities) == 0) then
         call diagnostics%add(span_of(group, trim(requests(i)), 1), 'gradients are derivatives of the quantities, '// &
                              'and there are none; give a group &quantity for each')
