@@ -209,15 +209,21 @@ contains
     end do
   end function number_after
 
-  !> Add names behind numbers in a sentence: link 2 becomes link 2 (crank), coordinates 1, 4 become coordinates 1 (A), 4 (B).
+  !> Add names behind numbers in a sentence: link 2 becomes link 2 (crank), coordinates 1, 4 become coordinates 1 (A), 4 (B), and
+  !> q4 = 0.5 becomes q4 (B) = 0.5.
   pure subroutine add_names(names, text)
     type(part_names_type), intent(in) :: names                !< the names
     character(len=:), allocatable, intent(inout) :: text      !< any sentence
+    integer :: i
 
     if (.not. has_names(names)) return
     call add_behind('link', names%links, text)
     call add_behind('coordinate', names%coordinates, text)
     call add_behind('pair', names%coordinates, text)
+    if (.not. allocated(names%coordinates)) return
+    do i = 1, 3
+      call add_to_values(trim(starts(i)), names%coordinates, text)
+    end do
   end subroutine add_names
 
   !> Add names behind the numbers that follow a word.
@@ -252,6 +258,28 @@ contains
       if (at > len(text)) return
     end do
   end subroutine add_behind
+
+  !> Add names behind coordinates that have a value in a sentence: q4 = 0.5 becomes q4 (B) = 0.5.
+  pure subroutine add_to_values(letters, list, text)
+    character(len=*), intent(in) :: letters                   !< q, dq or ddq
+    character(len=*), allocatable, intent(in) :: list(:)      !< names of coordinates
+    character(len=:), allocatable, intent(inout) :: text      !< any sentence
+    integer :: at, found, last
+    character(len=longest_called) :: name
+
+    at = 1
+    do
+      found = index(text(at:), ' '//letters)
+      if (found == 0) return
+      found = at + found
+      at = found + len(letters)
+      last = at + verify(text(at:)//'.', digits) - 2
+      if (last < at .or. index(text(last + 1:), ' = ') /= 1) cycle
+      name = name_in(list, number_after(letters, text(found:last)))
+      at = last + 1
+      if (name /= '') text = text(:last)//' ('//trim(name)//')'//text(at:)
+    end do
+  end subroutine add_to_values
 
   !> The next number of a list behind a word: after a blank, a comma or `and`. 0 where another word follows, or a broken number.
   pure subroutine next_number(text, at, number, last)

@@ -102,10 +102,10 @@ contains
     call read_coordinate(group, model, limit, exists, diagnostics)
     if (.not. exists) return
     if (.not. model%mechanism%pairs(limit%coordinate)%pair%angular) then
-      call diagnostics%add(span_of(group, 'coordinate', 1), 'q'//to_text(limit%coordinate)// &
+      call diagnostics%add(span_of(group, 'coordinate', 1), 'coordinate '//to_text(limit%coordinate)// &
                            ' is a length, and only angles turn fully')
     else if (.not. any([(model%problem%drives(i)%drive%coordinate == limit%coordinate, i=1, size(model%problem%drives))])) then
-      call diagnostics%add(span_of(group, 'coordinate', 1), 'the coordinate that turns fully must have a drive, and q'// &
+      call diagnostics%add(span_of(group, 'coordinate', 1), 'the coordinate that turns fully must have a drive, and coordinate '// &
                            to_text(limit%coordinate)//' has none')
     end if
   end subroutine read_crank

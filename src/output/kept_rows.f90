@@ -17,6 +17,7 @@ module mech9_kept_rows
     real(wp), allocatable :: rows(:, :)                   !< rows(:, i): row i; `count` of them are filled
     type(part_names_type) :: parts                        !< names of links and pairs, which may stand in those of columns
     type(motion_events_type) :: events                    !< those of the run
+    type(string_type), allocatable :: sentences(:)        !< about these events
     integer :: count = 0                                  !< how many rows are kept
     integer :: stride = 1                                 !< one row of so many is kept
     integer :: seen = 0                                   !< how many rows were taken, with those not kept

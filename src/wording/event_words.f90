@@ -1,6 +1,6 @@
 !> Sentences about the events of a motion that is not smooth.
 module mech9_event_words
-  use mech9_text, only: to_text
+  use mech9_text, only: string_type, to_text
   use mech9_part_names, only: name_in
   use mech9_mechanism, only: mechanism_type
   use mech9_result_units, only: impulse_unit_of
@@ -8,7 +8,7 @@ module mech9_event_words
     event_slip, event_lift
   implicit none
   private
-  public :: event_sentence, with_impulses_in_units
+  public :: event_sentence, event_sentences, with_impulses_in_units
 
 contains
 
@@ -27,14 +27,27 @@ contains
     end do
   end function with_impulses_in_units
 
+  !> The sentences about the events of a motion, with the names of coordinates.
+  pure subroutine event_sentences(events, mechanism, sentences)
+    type(motion_events_type), intent(in) :: events                !< with impulses in the units that the sentences show
+    type(mechanism_type), intent(in) :: mechanism                 !< the mechanism
+    type(string_type), allocatable, intent(out) :: sentences(:)   !< (events)
+    integer :: i
+
+    allocate (sentences(events%count))
+    do i = 1, events%count
+      sentences(i)%text = event_sentence(events%items(i), mechanism)
+    end do
+  end subroutine event_sentences
+
   !> The sentence about an event, such as "stop 1 (hip) is hit, impulse -1.579".
   pure function event_sentence(event, mechanism) result(text)
-    type(motion_event_type), intent(in) :: event   !< the event, with its impulse in the unit that the sentence shows
-    type(mechanism_type), intent(in), optional :: mechanism   !< tells the names of coordinates
+    type(motion_event_type), intent(in) :: event      !< the event, with its impulse in the unit that the sentence shows
+    type(mechanism_type), intent(in) :: mechanism     !< tells the names of coordinates
     character(len=:), allocatable :: text
 
     text = trim(event%group)//' '//to_text(event%number)
-    if (present(mechanism)) call add_name(event, mechanism, text)
+    call add_name(event, mechanism, text)
     select case (event%kind)
     case (event_stick)
       text = text//' sticks'

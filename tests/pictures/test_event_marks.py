@@ -68,6 +68,17 @@ def test_each_event_has_its_mark(checks, gnuplot, mech9d, tmp_path, name, column
     checks.equal((again.returncode, again.stderr), (0, ''), 'gnuplot draws the script again')
 
 
+def test_marks_have_names(checks, gnuplot, mech9d, tmp_path):
+    """The mark of an impact on a stop tells the name of the pair."""
+    path = tmp_path / 'named.nml'
+    text = text_of(example('four_bar_stop'))
+    path.write_text(text.replace('&pair coordinate=4,', "&pair coordinate=4, name='hip',", 1), encoding='utf-8')
+    done = run(mech9d, path, '--quiet', '--plot', 'run.svg:hip.q', folder=tmp_path)
+    checks.equal(done.returncode, 0, f'drawn; {done.stderr}')
+    marks = marks_of(text_of(tmp_path / 'run.gp'))[0]
+    checks.true(marks and all(' s: stop 1 (hip) ' in text for _, text, _ in marks), 'marks have the name', marks[:2])
+
+
 def test_many_events_have_ticks(checks, gnuplot, mech9d, tmp_path):
     """A slider that bounces hits its stop more than a hundred times."""
     events = plotted(checks, mech9d, 'bouncing_slider', tmp_path, 'run.svg:q1')

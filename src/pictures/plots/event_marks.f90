@@ -7,12 +7,11 @@ module mech9_event_marks
   use mech9_kinds, only: wp
   use mech9_counted, only: counted
   use mech9_error, only: error_type
-  use mech9_text, only: to_text
+  use mech9_text, only: string_type, to_text
   use mech9_file_bytes, only: read_bytes
   use mech9_text_file, only: replace_text
   use mech9_motion_event, only: motion_event_type, motion_events_type, event_impact, event_close, event_open, &
     event_stick, event_slip, event_lift
-  use mech9_event_words, only: event_sentence
   use mech9_gnuplot, only: quoted
   implicit none
   private
@@ -36,8 +35,9 @@ module mech9_event_marks
 contains
 
   !> The commands that mark the events within a range of the time. Each mark that stands for several events tells the first one.
-  pure function event_marks(events, ends) result(text)
+  pure function event_marks(events, sentences, ends) result(text)
     type(motion_events_type), intent(in) :: events   !< the events of the run
+    type(string_type), intent(in) :: sentences(:)    !< of these events, in their order
     real(wp), intent(in) :: ends(2)                  !< first and last time on the axis [s]
     character(len=:), allocatable :: text
     logical :: lines
@@ -56,11 +56,11 @@ contains
             cycle
           end if
         end if
-        if (first > 0) text = text//mark(events%items(first), more, kind, lines)
+        if (first > 0) text = text//mark(events%items(first), sentences(first)%text, more, kind, lines)
         first = i
         more = 0
       end do
-      if (first > 0) text = text//mark(events%items(first), more, kind, lines)
+      if (first > 0) text = text//mark(events%items(first), sentences(first)%text, more, kind, lines)
     end do
   end function event_marks
 
@@ -73,8 +73,9 @@ contains
   end function is_within
 
   !> The commands for one mark.
-  pure function mark(event, more, kind, lines) result(text)
+  pure function mark(event, sentence, more, kind, lines) result(text)
     type(motion_event_type), intent(in) :: event   !< the event
+    character(len=*), intent(in) :: sentence       !< words about it
     integer, intent(in) :: more                    !< how many others the mark stands for
     integer, intent(in) :: kind                    !< number of its kind
     logical, intent(in) :: lines                   !< there is room for a line, else for a tick
@@ -82,7 +83,7 @@ contains
     character(len=3) :: size
 
     at = to_text(event%t, 10)//', graph '
-    words = 't = '//to_text(event%t, 8)//' s: '//event_sentence(event)
+    words = 't = '//to_text(event%t, 8)//' s: '//sentence
     if (more > 0) words = words//', and '//counted(more, 'more event')//' of this kind'
     if (lines) then
       look = '1 nohead back lc rgb '''//thin_line//''' lw 0.8 dt 2'

@@ -31,7 +31,7 @@ module mech9_plot_script
 contains
 
   !> The script of a picture. Users can run it again, and its first line tells how.
-  pure function picture_script(title, curves, data, picture, script, table, events) result(text)
+  pure function picture_script(title, curves, data, picture, script, table, events, sentences) result(text)
     character(len=*), intent(in) :: title      !< title of the mechanism
     type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
     type(plot_data_type), intent(in) :: data   !< rows and columns that are plotted
@@ -39,6 +39,7 @@ contains
     character(len=*), intent(in) :: script     !< name of the file of the script, without its folder
     character(len=*), intent(in) :: table      !< file with the results, without its folder; empty: the script holds the data
     type(motion_events_type), intent(in) :: events   !< those of the run, which are marked over the time
+    type(string_type), intent(in) :: sentences(:)    !< about these events
     character(len=:), allocatable :: text, source, key
     type(string_type), allocatable :: lines(:)
     type(curve_type), allocatable :: own(:)
@@ -70,7 +71,7 @@ contains
       own = pack(curves, panels == i)
       if (events%count > 0 .and. (over_time(own(1)) .neqv. marked)) then
         marked = .not. marked
-        if (marked) text = text//event_marks(events, data%extent(own%x))
+        if (marked) text = text//event_marks(events, sentences, data%extent(own%x))
         if (marked) key = event_key(events, data%extent(own%x))
         if (.not. marked) text = text//no_marks
       end if

@@ -186,15 +186,16 @@ contains
   end subroutine write_rows
 
   !> Hand the events of the run to the plots, before these are closed.
-  subroutine mark_events(self, events)
+  subroutine mark_events(self, events, sentences)
     class(results_type), intent(inout) :: self       !< the results
     type(motion_events_type), intent(in) :: events   !< in the order of time
+    type(string_type), intent(in) :: sentences(:)    !< about these events
     integer :: i
 
     do i = 1, size(self%sinks)
       select type (sink => self%sinks(i)%sink)
       type is (plot_type)
-        call sink%mark(events)
+        call sink%mark(events, sentences)
       end select
     end do
   end subroutine mark_events

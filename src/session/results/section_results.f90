@@ -5,6 +5,7 @@ module mech9_section_results
   use mech9_error, only: error_type, raise, exit_usage
   use mech9_text, only: string_type, to_text
   use mech9_counted, only: counted
+  use mech9_part_names, only: part_names_type, add_names
   use mech9_model, only: model_type
   use mech9_heading, only: heading_type, new_heading
   use mech9_table, only: table_type
@@ -156,10 +157,12 @@ contains
   end subroutine take_points
 
   !> Print how many points there are; where there are none, the range of the value that was not met.
-  subroutine print_section(unit, section, writes)
+  subroutine print_section(unit, section, writes, names)
     integer, intent(in) :: unit                               !< Fortran unit to write to
     class(section_record_type), intent(in) :: section         !< the section
     logical, intent(in) :: writes                             !< files are written
+    type(part_names_type), intent(in) :: names                !< of links and pairs
+    character(len=:), allocatable :: words
 
     if (section%count > 0) then
       write (unit, '(a)') 'section: '//counted(section%count, 'point')
@@ -168,7 +171,9 @@ contains
     else if (section%wanted%period > 0.0_wp .or. section%range(1) > section%range(2)) then
       write (unit, '(a)') 'the section has no point: the motion, or what follows the transient, is shorter than the period'
     else
-      write (unit, '(a)') 'the section has no point: '//words_of_value(section)//' is never met'// &
+      words = ' '//words_of_value(section)
+      call add_names(names, words)
+      write (unit, '(a)') 'the section has no point:'//words//' is never met'// &
         trim(merge(' in this direction', '                  ', section%wanted%direction /= 0))//'; it went from '// &
         to_text(section%wanted%value + section%range(1), 6)//' to '//to_text(section%wanted%value + section%range(2), 6)
     end if

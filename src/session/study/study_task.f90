@@ -215,7 +215,8 @@ contains
     if (allocated(results%section)) then
       call write_section_files(options, model, results%section, results%paths%table, of_section)
       if (allocated(of_section)) call diagnostics%add_error(of_section)
-      if (.not. quiet) call print_section(error_unit, results%section, .not. options%has('no-write'))
+      if (.not. quiet) &
+        call print_section(error_unit, results%section, .not. options%has('no-write'), model%mechanism%names)
     end if
     if (allocated(err)) then
       call diagnostics%add_error(err)

@@ -4,6 +4,7 @@ module mech9_fit_panels
   use mech9_error, only: error_type
   use mech9_text, only: to_text
   use mech9_model, only: model_type
+  use mech9_part_names, only: name_in
   use mech9_result_units, only: unit_of, unit_name
   use mech9_objective, only: path_objective, function_objective, pose_objective, timing_over
   use mech9_fit_script, only: fit_panel_type
@@ -157,6 +158,17 @@ contains
     direction = cos(angle)*direction + sin(angle)*[0.0_wp, axis(3), -axis(2)] + (1.0_wp - cos(angle))*axis(1)*axis
   end function turned_x
 
+  !> The column of a coordinate, by the name of its pair where that has one: B.q.
+  pure function column_of(model, coordinate) result(name)
+    type(model_type), intent(in) :: model      !< of the design
+    integer, intent(in) :: coordinate          !< number of the coordinate
+    character(len=:), allocatable :: name
+
+    name = 'q'//to_text(coordinate)
+    if (name_in(model%mechanism%names%coordinates, coordinate) /= '') &
+      name = trim(name_in(model%mechanism%names%coordinates, coordinate))//'.q'
+  end function column_of
+
   !> Append the panels of a function: its curve with the targets, and the differences at the targets.
   subroutine append_function(model, number, way, met, panels)
     type(model_type), intent(in) :: model                            !< of the design
@@ -172,14 +184,14 @@ contains
     associate (objective => model%request%objectives(number))
       n = size(met%times)
       unit = unit_of(model%mechanism, objective%coordinate)
-      name = 'q'//to_text(objective%coordinate)
+      name = column_of(model, objective%coordinate)
       x = way%times
       at = met%times
       panel%x_label = 't [s]'
       if (objective%timing == timing_over) then
         x = way%q(objective%over, :)/unit_of(model%mechanism, objective%over)
         at = objective%at/unit_of(model%mechanism, objective%over)
-        panel%x_label = 'q'//to_text(objective%over)//' ['//trim(unit_name(model%mechanism, objective%over))//']'
+        panel%x_label = column_of(model, objective%over)//' ['//trim(unit_name(model%mechanism, objective%over))//']'
       end if
       panel%title = name//' and its '//to_text(n)//' targets'
       panel%y_label = name//' ['//trim(unit_name(model%mechanism, objective%coordinate))//']'
