@@ -412,6 +412,8 @@ class Periodic:
 class Branches(Mapping[str, np.ndarray]):
     """Branches over a parameter: `branch`, `point`, the parameter, the coordinates, `growth` and `type`, by their names.
 
+    Motions with a period of their own have `period`, too.
+
     names, units: of the columns. table: (points, columns), read-only. branches: what a report says of each, with its special points.
     """
 
@@ -425,7 +427,8 @@ class Branches(Mapping[str, np.ndarray]):
 
     @property
     def special_points(self) -> list[dict[str, Any]]:
-        """All special points in the order of the table: `branch`, `point`, `type`, `kind`, `value`, `q`, `growth`."""
+        """All special points in the order of the table: `branch`, `point`, `type`, `kind`, `value`, `q`, `growth`;
+        where motions have a period of their own, `period`."""
         return [{'branch': branch['branch'], **point} for branch in self.branches for point in branch['special_points']]
 
     def plot(self, y: str, x: str | None = None) -> Any:

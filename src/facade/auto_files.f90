@@ -13,7 +13,7 @@ module mech9_auto_files
   use mech9_period_map, only: period_map_type
   use mech9_periodic, only: periodic_found_type, find_periodic
   use mech9_rest, only: rest_type
-  use mech9_branches, only: first_request, begin_at_rest
+  use mech9_branches, only: first_request, begin_at_rest, refuse_family
   use mech9_state_rates, only: refuse_jumps
   use mech9_checked_mechanism, only: checked_mechanism_type
   use mech9_motion_equations, only: motion_equations_type
@@ -195,7 +195,8 @@ contains
     if (.not. allocated(err)) call find_law_period(model, laws, err)
     if (allocated(err)) return
     associate (motion => found%motions(1))
-      call refuse_motion(motion%turns, motion%is_free, motion%at_one, motion%is_trivial .and. .not. laws%follows_time, start, err)
+      call refuse_turns(motion%turns, start, err)
+      if (.not. allocated(err)) call refuse_family(motion, 'AUTO follows', start%request, err)
       if (.not. allocated(err)) call map%begin(model, err)
       if (allocated(err)) return
       start%q = motion%q
@@ -221,26 +222,16 @@ contains
     start%states(:n, :) = states
   end subroutine find_periodic_start
 
-  !> Fail where AUTO cannot begin at a periodic motion.
-  subroutine refuse_motion(turns, is_free, at_one, is_rest, start, err)
+  !> Fail where a motion makes whole turns.
+  subroutine refuse_turns(turns, start, err)
     integer, intent(in) :: turns(:)                        !< (M) of coordinates in a period
-    logical, intent(in) :: is_free                         !< the period belongs to the motion
-    integer, intent(in) :: at_one                          !< multipliers that are 1
-    logical, intent(in) :: is_rest                         !< nothing moves
     type(start_type), intent(in) :: start                  !< with the request
     type(error_type), allocatable, intent(out) :: err      !< allocated where it is refused
 
-    if (any(turns /= 0)) then
-      call raise(err, exit_data, 'coordinate '//to_text(findloc(turns /= 0, .true., dim=1))//' makes whole turns in a period, '// &
-                 'and AUTO knows no motions that come back but for turns; --branch does', start%request%place)
-    else if (is_rest) then
-      call raise(err, exit_data, 'the start leads to a position of rest; follow it with of=''equilibrium'', whose Hopf points '// &
-                 'lead AUTO to periodic motions', start%request%place)
-    else if (is_free .and. at_one > 1) then
-      call raise(err, exit_data, 'the motion conserves energy, so that it belongs to a family at each value of the parameter; '// &
-                 'AUTO follows single motions: add some damping and what feeds the motion', start%request%place)
-    end if
-  end subroutine refuse_motion
+    if (all(turns == 0)) return
+    call raise(err, exit_data, 'coordinate '//to_text(findloc(turns /= 0, .true., dim=1))//' makes whole turns in a period, '// &
+               'and AUTO knows no motions that come back but for turns; --branch does', start%request%place)
+  end subroutine refuse_turns
 
   !> The file with FUNC and STPNT.
   function equations_file(model, start, equations, path) result(text)

@@ -2,7 +2,7 @@
 module mech9_branches_report
   use mech9_json, only: json_type
   use mech9_special_points, only: fold, branching, hopf, period_doubling, torus
-  use mech9_curve_branch, only: ends_low, ends_high, ends_points, ends_closed, ends_range, ends_failed
+  use mech9_curve_branch, only: ends_low, ends_high, ends_points, ends_closed, ends_range, ends_failed, ends_special
   use mech9_branches, only: branches_found_type
   implicit none
   private
@@ -30,7 +30,11 @@ contains
         call json%add('closed', branch%ends(2)%reason == ends_closed)
         call json%begin_array('ends')
         do i = 1, 2
-          call json%add(name_of_end(branch%ends(i)%reason))
+          if (branch%ends(i)%reason == ends_special) then
+            call json%add(name_of_kind(branch%kind(merge(1, branch%count, i == 1))))
+          else
+            call json%add(name_of_end(branch%ends(i)%reason))
+          end if
         end do
         call json%end_array()
         call json%begin_array('special_points')
@@ -42,7 +46,8 @@ contains
           call json%add('kind', name_of_kind(branch%kind(i)))
           call json%add('value', found%rows(3, at + i))
           call json%add('q', found%rows(4:n, at + i))
-          if (found%columns%count > n + 1) call json%add('growth', found%rows(n + 1, at + i))
+          if (found%period > 0) call json%add('period', found%rows(found%period, at + i))
+          if (found%growth > 0) call json%add('growth', found%rows(found%growth, at + i))
           call json%end_object()
         end do
         call json%end_array()

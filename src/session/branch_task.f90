@@ -153,7 +153,7 @@ contains
     call options%arguments('plot', requests)
     do j = 1, size(model%parameters)
       if (model%parameters(j)%name /= options%argument('branch')) cycle
-      columns = columns_of_branches(model, model%parameters(j), .true.)
+      columns = columns_of_branches(model, model%parameters(j), .true., .true.)
       do i = 1, size(requests)
         call read_branch_plot(requests(i)%text, columns%names(:columns%count), request, err)
         if (allocated(err)) return

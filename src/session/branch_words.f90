@@ -5,7 +5,8 @@ module mech9_branch_words
   use mech9_text, only: to_text
   use mech9_counted, only: counted
   use mech9_explanation, only: explain
-  use mech9_curve_branch, only: branch_end_type, ends_low, ends_high, ends_points, ends_closed, ends_range, ends_failed
+  use mech9_curve_branch, only: branch_end_type, ends_low, ends_high, ends_points, ends_closed, ends_range, ends_failed, &
+    ends_special
   use mech9_branches, only: branches_found_type
   use mech9_branches_report, only: name_of_kind
   implicit none
@@ -28,7 +29,7 @@ contains
         do i = 1, branch%count
           if (branch%kind(i) == 0) cycle
           write (unit, '(a)') '  '//name_of_kind(branch%kind(i))//' at '//found%parameter//' = '// &
-            to_text(found%rows(3, at + i), 12)//', point '//to_text(i)//coordinates(found, at + i)
+            to_text(found%rows(3, at + i), 12)//', point '//to_text(i)//coordinates(found, at + i)//period(found, at + i)
         end do
         at = at + branch%count
       end associate
@@ -53,6 +54,17 @@ contains
     if (found%columns%motion > 3 + few) text = text//' and others'
   end function coordinates
 
+  !> The period of a row, where motions have periods of their own.
+  function period(found, row) result(text)
+    type(branches_found_type), intent(in) :: found       !< the branches
+    integer, intent(in) :: row                           !< number of the row
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (found%period == 0) return
+    if (found%rows(found%period, row) > 0.0_wp) text = ', period '//to_text(found%rows(found%period, row), 10)//' s'
+  end function period
+
   !> Why a branch ends at both ends.
   function words_of_ends(found, b) result(text)
     type(branches_found_type), intent(in) :: found       !< the branches
@@ -64,8 +76,8 @@ contains
         text = 'it is closed'
         if (allocated(branch%ends(2)%turns)) text = text//turns(branch%ends(2)%turns)
       else
-        text = 'it begins '//words_of_end(found, group, branch%ends(1))//' and ends '// &
-               words_of_end(found, group, branch%ends(2))
+        text = 'it begins '//words_of_end(found, group, branch%ends(1), branch%kind(1))//' and ends '// &
+               words_of_end(found, group, branch%ends(2), branch%kind(branch%count))
       end if
     end associate
   end function words_of_ends
@@ -83,10 +95,11 @@ contains
   end function turns
 
   !> Why a branch ends.
-  function words_of_end(found, group, last) result(text)
+  function words_of_end(found, group, last, kind) result(text)
     type(branches_found_type), intent(in) :: found       !< the branches
     integer, intent(in) :: group                         !< number of the group
     type(branch_end_type), intent(in) :: last            !< the end
+    integer, intent(in) :: kind                          !< of its point
     character(len=:), allocatable :: text
     type(error_type), allocatable :: err
 
@@ -99,6 +112,8 @@ contains
       text = 'after so many points as points= allows'
     case (ends_range)
       text = 'at a rigid stop'
+    case (ends_special)
+      text = 'at a '//name_of_kind(kind)
     case (ends_failed)
       text = 'where no further point was found, with steps down to '//to_text(last%last_step, 2)
       if (allocated(last%err)) then

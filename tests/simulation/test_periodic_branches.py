@@ -140,7 +140,7 @@ def test_driven_pendulum(checks, mech9d, tmp_path):
 @pytest.mark.parametrize('text, name, code, words', (
     (OSCILLATOR.replace("law='harmonic', amplitude=1, angular_frequency=0.5, phase=1.5707963267948966 ", '') +
      "&parameter name='c', sets='load(1).damping', low=0.2, high=2 /\n&branch parameter='c', of='periodic' /\n", 'c', 3,
-     'no drive, load or motor follows time'),
+     'give a guess for it by period='),
     (PENDULUM.replace("kind='revolute', axis=0,0,1 /", "kind='revolute', axis=0,0,1 /\n&drive coordinate=1, kind='harmonic', amplitude=1, "
                       "angular_frequency=1 /").replace('&initial coordinate=1, position=0.2, velocity=0 /\n', ''), 'g', 3,
      'every independent coordinate is driven'),

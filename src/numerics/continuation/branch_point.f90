@@ -85,6 +85,7 @@ contains
 
     guess = point%z + matmul(point%slopes, change)
     guess(point%place) = point%z(point%place) + change
+    curve%equations = point%equations
     call curve%evaluate(point%place, guess, other, err)
     if (.not. allocated(err)) point = other
   end subroutine move

@@ -23,6 +23,8 @@ module mech9_curve
     real(wp), allocatable :: slopes(:, :)      !< (m,n+1) derivatives of the image by the unknowns
     real(wp), allocatable :: tangent(:)        !< (n+1) of the curve, in the unknowns; of length 1 as an image
     real(wp), allocatable :: direction(:)      !< (m) the same as an image
+    integer :: equations = 1                   !< number of the equations that it solves, where a problem has several
+    real(wp) :: room = 1.0_wp                  !< up to the end of the range in which solutions have a meaning, if it is found with them
   end type curve_point_type
 
   !> The stability of a solution, as the problem judges it.
@@ -37,11 +39,13 @@ module mech9_curve
     integer :: m = 0                           !< number of components of an image
     real(wp) :: scale = 1.0_wp                 !< size of the derivatives of the equations, at the start
     real(wp), allocatable :: period(:)         !< (m) a component that differs by it is the same; 0: none, in its unit
+    integer :: equations = 1                   !< number of the equations that are evaluated, where a problem has several
   contains
     procedure(evaluated), deferred :: evaluate
     procedure(changed), deferred :: change_unknowns
     procedure(judged), deferred :: judge
     procedure :: gap => no_gap
+    procedure :: meet_end => no_exact_end
     procedure :: kind_of_crossing => always_hopf
     procedure :: is_stopped => never_stopped
   end type curve_type
@@ -83,6 +87,19 @@ contains
 
     gap = 1.0_wp + 0.0_wp*size(point%z)*self%n
   end function no_gap
+
+  !> The exact end of the range in which solutions have a meaning, between a point within and one beyond it. Without one of its own a problem
+  !> leaves it to a search for the zero of the room.
+  subroutine no_exact_end(self, a, b, point, kind)
+    class(curve_type), intent(inout) :: self            !< the problem
+    type(curve_point_type), intent(in) :: a             !< within the range
+    type(curve_point_type), intent(in) :: b             !< beyond it
+    type(curve_point_type), intent(inout) :: point      !< the end, where there is one
+    integer, intent(out) :: kind                        !< its kind; regular: it was not found
+
+    kind = regular + 0*size(a%z)*size(b%z)*self%n
+    point%room = 0.0_wp
+  end subroutine no_exact_end
 
   !> The kind of a point at which a pair of roots crosses the imaginary axis.
   integer function always_hopf(self, point) result(kind)

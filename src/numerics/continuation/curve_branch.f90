@@ -6,12 +6,13 @@ module mech9_curve_branch
   implicit none
   private
   public :: curve_branch_type, branch_end_type, curve_settings_type, join_halves
-  public :: ends_low, ends_high, ends_points, ends_closed, ends_range, ends_failed, ends_stopped
+  public :: ends_low, ends_high, ends_points, ends_closed, ends_range, ends_failed, ends_stopped, ends_special
 
   !> Why a branch ends: at the least or largest value of the parameter, after so many points, where it began, at the end of the range in
-  !> which solutions have a meaning, because no further point was found, or because the work was stopped.
+  !> which solutions have a meaning, because no further point was found, because the work was stopped, or at an end of this range which is a
+  !> special point.
   integer, parameter :: ends_low = 1, ends_high = 2, ends_points = 3, ends_closed = 4, ends_range = 5, &
-    ends_failed = 6, ends_stopped = 7
+    ends_failed = 6, ends_stopped = 7, ends_special = 8
 
   !> The bounds of steps and branches. The parameter counts in parts of its range.
   type :: curve_settings_type

@@ -53,6 +53,7 @@ contains
     integer :: i
 
     start = from%z(from%place)
+    curve%equations = from%equations
     call curve%evaluate(from%place, from%z + matmul(from%slopes, step), trial, correction%err)
     before = huge(before)
     do i = 1, most_steps

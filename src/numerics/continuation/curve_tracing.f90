@@ -11,7 +11,7 @@ module mech9_curve_tracing
     growing_reals, locate_crossings
   use mech9_branch_point, only: branch_point_type, polish_branch_point
   use mech9_curve_branch, only: curve_branch_type, curve_settings_type, ends_low, ends_high, ends_points, ends_closed, ends_range, &
-    ends_failed, ends_stopped
+    ends_failed, ends_stopped, ends_special
   implicit none
   private
   public :: trace, shortest_way
@@ -21,6 +21,7 @@ module mech9_curve_tracing
     integer :: kind = regular             !< of point
     real(wp) :: distance = 0.0_wp         !< from the beginning of the step
     type(curve_point_type) :: point       !< the point
+    integer :: row = regular              !< kind of its row, where the branch ends at it
   end type event_type
 
   !> Steps of Newton's method at which the next step may be longer, and at which it is shorter.
@@ -117,7 +118,7 @@ contains
     a = b
     call change(curve, a)
     done = .true.
-    if (any(a%place /= kept%place)) call set_direction(a, direction, done)
+    if (any(a%place /= kept%place) .or. a%equations /= kept%equations) call set_direction(a, direction, done)
   end subroutine go_on
 
   !> Take other unknowns where they can be taken.
@@ -130,7 +131,7 @@ contains
     other = a
     call curve%change_unknowns(other, err)
     if (.not. allocated(err)) then
-      if (any(other%place /= a%place)) a = other
+      if (any(other%place /= a%place) .or. other%equations /= a%equations) a = other
     end if
   end subroutine change
 
@@ -182,7 +183,7 @@ contains
     if (branch%ends(2)%reason == 0) return
     if (last%kind == regular .or. branch%ends(2)%reason == ends_closed) then
       call curve%judge(last%point, verdict)
-      call branch%add(last%point, verdict, regular)
+      call branch%add(last%point, verdict, last%row)
       if (branch%ends(2)%reason == ends_closed) branch%kind(branch%count) = branch%kind(1)
     end if
   contains
@@ -261,10 +262,17 @@ contains
     if (tests(2) >= 0.0_wp) return
     found = tests(1) > 0.0_wp
     barrier%distance = 0.0_wp
-    if (found) call locate(curve, a, length, range_end, tests, barrier%distance, barrier%point, found)
+    if (found) then
+      call curve%meet_end(a, b, barrier%point, barrier%row)
+      if (barrier%row /= regular) then
+        barrier%distance = dot_product(barrier%point%z - a%z, a%direction)
+      else
+        call locate(curve, a, length, range_end, tests, barrier%distance, barrier%point, found)
+      end if
+    end if
     ! the limit of the parameter may come first
     if (branch%ends(2)%reason > 0 .and. last%kind == regular .and. last%distance < barrier%distance) return
-    branch%ends(2)%reason = ends_range
+    branch%ends(2)%reason = merge(ends_range, ends_special, barrier%row == regular)
     last = barrier
     if (.not. found) last%kind = range_end
   end subroutine find_end

@@ -1,5 +1,6 @@
 !> Branches of positions and of periodic motions of a model over one of its parameters: what --branch finds.
 module mech9_branches
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, add_place, exit_usage, exit_data, exit_singular, exit_interrupted
   use mech9_text, only: to_text
@@ -22,12 +23,13 @@ module mech9_branches
   use mech9_curve_branches, only: find_curve_branches => find_branches
   use mech9_single_parameter, only: single_parameter_type, new_single_parameter
   use mech9_position_curve, only: position_curve_type, new_position_curve, begin_curve
+  use mech9_periodic_motion, only: periodic_motion_type
   use mech9_periodic, only: periodic_found_type, find_periodic
   use mech9_law_periods, only: law_period_type, find_law_period
   use mech9_periodic_curve, only: periodic_curve_type, begin_periodic_curve
   implicit none
   private
-  public :: branches_found_type, find_branches, columns_of_branches, first_request, begin_at_rest
+  public :: branches_found_type, find_branches, columns_of_branches, first_request, begin_at_rest, refuse_family
 
   !> The branches of one or more groups &branch over the same parameter.
   type :: branches_found_type
@@ -39,6 +41,7 @@ module mech9_branches
     integer, allocatable :: groups(:)                      !< (branches) number of the group among those of this parameter
     real(wp), allocatable :: low(:), high(:)               !< (groups) range of the parameter, in the units of the data file
     character(len=11), allocatable :: of(:)                !< (groups) equilibrium, position or periodic
+    integer :: growth = 0, period = 0                      !< numbers of these columns; 0: the table has none
     integer :: left_out = 0                                !< branch points from which no branch was followed: they are not simple
     character(len=:), allocatable :: parameter             !< name of the parameter
   contains
@@ -69,8 +72,7 @@ contains
       call complete_request(model, model%parameters(number), requests(i), err)
       if (allocated(err)) return
     end do
-    found%columns = columns_of_branches(model, model%parameters(number), &
-                                        any([(requests(i)%of /= 'position', i=1, size(requests))]))
+    call find_columns(model, model%parameters(number), requests, found)
     allocate (found%rows(found%columns%count, 0))
     do i = 1, size(requests)
       call follow(model, variable, number, requests(i), i, found, err, interruption)
@@ -86,8 +88,7 @@ contains
     if (allocated(self%branches)) number = size(self%branches)
   end function count_branches
 
-  !> The first group &branch of a data file, complete. Motions with a period of their own count, too. Fails with exit_data where there is
-  !> none, and as find_branches does.
+  !> The first group &branch of a data file, complete. Fails with exit_data where there is none, and as find_branches does.
   subroutine first_request(model, request, number, err)
     type(model_type), intent(in) :: model                     !< the model
     type(branch_request_type), intent(out) :: request         !< the group
@@ -104,7 +105,7 @@ contains
       return
     end if
     call find_parameter(model, request%parameter, number, err)
-    if (.not. allocated(err)) call complete_request(model, model%parameters(number), request, err, own_period=.true.)
+    if (.not. allocated(err)) call complete_request(model, model%parameters(number), request, err)
   end subroutine first_request
 
   !> The number of a parameter.
@@ -161,18 +162,15 @@ contains
 
   !> Complete what is asked for by the range of the parameter and by the kind of the coordinates. Fails where there is no range, or
   !> where such branches are not known.
-  subroutine complete_request(model, parameter, request, err, own_period)
+  subroutine complete_request(model, parameter, request, err)
     type(model_type), intent(in) :: model                     !< the model
     type(parameter_type), intent(in) :: parameter             !< the parameter
     type(branch_request_type), intent(inout) :: request       !< the group
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
-    logical, intent(in), optional :: own_period               !< motions may have a period of their own; not unless given
     type(law_period_type) :: laws
-    logical :: any_free, needs_law
+    logical :: any_free
 
-    if (any(parameter%name == [character(len=6) :: 'branch', 'point', 'growth', 'type']) .or. is_heading(model, parameter%name)) &
-      call raise(err, exit_data, 'the table of branches has a column '''//parameter%name//''' of its own; give the parameter '// &
-                 'another name', parameter%place)
+    if (is_heading(model, parameter%name)) call refuse_name(parameter, err)
     if (allocated(err)) return
     any_free = any(model%problem%partition%kind == free_coordinate)
     if (request%of == '') request%of = trim(merge('equilibrium', 'position   ', any_free))
@@ -195,21 +193,28 @@ contains
       call refuse_parts(model, err)
     else if (request%of == 'periodic') then
       call find_law_period(model, laws, err)
-      needs_law = .true.
-      if (present(own_period)) needs_law = .not. own_period
-      if (needs_law .and. .not. (allocated(err) .or. laws%follows_time)) &
-        call raise(err, exit_data, 'no drive, load or motor follows time, and branches of periodic motions with a period of '// &
-                   'their own are not known; --periodic finds single ones', request%place)
+      if (allocated(err) .or. laws%follows_time) return
+      if (parameter%name == 'period') call refuse_name(parameter, err)
     end if
   end subroutine complete_request
 
-  !> Whether a name is the heading of a coordinate.
+  !> Fail because the name of a parameter is a heading of the table.
+  subroutine refuse_name(parameter, err)
+    type(parameter_type), intent(in) :: parameter             !< the parameter
+    type(error_type), allocatable, intent(out) :: err         !< the failure
+
+    call raise(err, exit_data, 'the table of branches has a column '''//parameter%name//''' of its own; give the parameter '// &
+               'another name', parameter%place)
+  end subroutine refuse_name
+
+  !> Whether a name is a heading of all tables.
   pure logical function is_heading(model, name)
     type(model_type), intent(in) :: model               !< the model
     character(len=*), intent(in) :: name                !< the name
     integer :: k
 
-    is_heading = any([(name == 'q'//to_text(k), k=1, size(model%mechanism%pairs))])
+    is_heading = any(name == [character(len=6) :: 'branch', 'point', 'growth', 'type']) .or. &
+                 any([(name == 'q'//to_text(k), k=1, size(model%mechanism%pairs))])
   end function is_heading
 
   !> Fail where the mechanism has parts whose rest is not a smooth function of a parameter.
@@ -297,7 +302,7 @@ contains
     found%low = [found%low, request%low]
     found%high = [found%high, request%high]
     found%of = [character(len=11) :: found%of, request%of]
-    call put_rows(model, curve%m, range, unit, branches, size(found%branches), found)
+    call put_rows(model, curve%m, range, unit, request%of == 'periodic', branches, size(found%branches), found)
     found%groups = [found%groups, spread(group, 1, size(branches))]
     found%branches = [found%branches, branches]
     if (any([branches%ends(1)%reason, branches%ends(2)%reason] == ends_stopped)) &
@@ -318,10 +323,28 @@ contains
 
     if (present(interruption)) allocate (curve%interruption, source=interruption)
     call find_periodic(model, found, err, interruption)
+    if (.not. allocated(err)) call refuse_family(found%motions(1), 'the branch follows', request, err)
     if (.not. allocated(err)) &
       call begin_periodic_curve(single, model, found%motions(1), value, request%high - request%low, curve, start, err)
     if (allocated(err)) call add_place(err, place=request%place)
   end subroutine begin_motions
+
+  !> Fail with exit_data where a free motion is none of its own at its value of the parameter.
+  subroutine refuse_family(motion, follows, request, err)
+    type(periodic_motion_type), intent(in) :: motion       !< the motion
+    character(len=*), intent(in) :: follows                !< name and verb of a program that follows motions
+    type(branch_request_type), intent(in) :: request       !< the group &branch
+    type(error_type), allocatable, intent(out) :: err      !< allocated where it is refused
+
+    if (.not. motion%is_free) return
+    if (motion%is_trivial) then
+      call raise(err, exit_data, 'the start leads to a position of rest; take of=''equilibrium'', whose Hopf points are ends '// &
+                 'of branches of periodic motions, or begin nearer to a motion', request%place)
+    else if (motion%at_one > 1) then
+      call raise(err, exit_data, 'the motion conserves energy or something else, so that it belongs to a family at each value '// &
+                 'of the parameter; '//follows//' single motions: add some damping and what feeds the motion', request%place)
+    end if
+  end subroutine refuse_family
 
   !> Find the start of the branches. Fails where there is none.
   subroutine begin(model, single, value, request, curve, start, err)
@@ -376,11 +399,12 @@ contains
   end subroutine begin_at_rest
 
   !> Put the points of branches into rows of the table.
-  subroutine put_rows(model, last, range, unit, branches, before, found)
+  subroutine put_rows(model, last, range, unit, are_motions, branches, before, found)
     type(model_type), intent(in) :: model                  !< the model
     integer, intent(in) :: last                            !< component of an image that is the parameter
     real(wp), intent(in) :: range                          !< its range, in the units of the data file
-    real(wp), intent(in) :: unit(:)                        !< (M or more) of the coordinates [rad, m]
+    real(wp), intent(in) :: unit(:)                        !< (M or more) of the coordinates [rad, m], ..., of a period of motions' own [s]
+    logical, intent(in) :: are_motions                     !< periodic motions, else positions
     type(curve_branch_type), intent(in) :: branches(:)     !< its branches
     integer, intent(in) :: before                          !< number of branches before them
     type(branches_found_type), intent(inout) :: found      !< gets the rows
@@ -398,7 +422,9 @@ contains
         row(1:2) = [real(before + b, wp), real(i, wp)]
         row(3) = branches(b)%z(last, i)*range
         row(4:3 + m) = branches(b)%z(:m, i)*unit(:m)
-        if (size(row) == m + 5) row(m + 4) = branches(b)%growth(i)
+        if (found%growth > 0) row(found%growth) = branches(b)%growth(i)
+        if (found%period > 0) row(found%period) = ieee_value(1.0_wp, ieee_quiet_nan)
+        if (found%period > 0 .and. are_motions) row(found%period) = branches(b)%z(last - 1, i)*unit(last - 1)
         row(size(row)) = branches(b)%kind(i)
         call found%columns%convert(row)
         at = at + 1
@@ -409,11 +435,34 @@ contains
     call move_alloc(rows, found%rows)
   end subroutine put_rows
 
+  !> Find the columns of the table, and which of them have the growth and the period.
+  subroutine find_columns(model, parameter, requests, found)
+    type(model_type), intent(in) :: model                    !< the model
+    type(parameter_type), intent(in) :: parameter            !< over which the branches are
+    type(branch_request_type), intent(in) :: requests(:)     !< the groups, complete
+    type(branches_found_type), intent(inout) :: found        !< gets the columns
+    type(law_period_type) :: laws
+    type(error_type), allocatable :: unused
+    integer :: i
+    logical :: with_growth, with_period
+
+    with_growth = any([(requests(i)%of /= 'position', i=1, size(requests))])
+    with_period = any([(requests(i)%of == 'periodic', i=1, size(requests))])
+    if (with_period) then
+      call find_law_period(model, laws, unused)
+      with_period = .not. (allocated(unused) .or. laws%follows_time)
+    end if
+    found%columns = columns_of_branches(model, parameter, with_growth, with_period)
+    if (with_growth) found%growth = found%columns%count - 1
+    if (with_period) found%period = found%columns%count - 2
+  end subroutine find_columns
+
   !> The columns of a table of branches.
-  function columns_of_branches(model, parameter, with_growth) result(columns)
+  function columns_of_branches(model, parameter, with_growth, with_period) result(columns)
     type(model_type), intent(in) :: model               !< the model
     type(parameter_type), intent(in) :: parameter       !< over which the branches are
     logical, intent(in) :: with_growth                  !< some are of positions of rest or of motions
+    logical, intent(in) :: with_period                  !< some are of motions with a period of their own
     type(columns_type) :: columns
     integer :: k
 
@@ -426,6 +475,7 @@ contains
       call columns%append_in('q'//to_text(k), si_unit(model%mechanism%pairs(k)%pair))
     end do
     columns%motion = columns%count
+    if (with_period) call columns%append('period', 's', 'period of the motion')
     if (with_growth) call columns%append('growth', '1/s', 'largest real part of the eigenvalues of the linearised equations of '// &
                                          'motion, or of the logarithms of multipliers over the period')
     call columns%append('type', '', '0 regular, 1 fold, 2 branch point, 3 Hopf, 4 period doubling, 5 torus')

@@ -380,9 +380,13 @@ contains
     if (allocated(err)) return
     motion%period = newton%period
     motion%is_trivial = all(map%largest_move <= at_rest*map%unit_of_coordinate)
-    if (motion%is_trivial) motion%repeats_after = 0.0_wp
     call find_multipliers(map%monodromy, motion%multipliers)
     motion%growth = newton%size_of_matrix
+    ! a small free motion has a multiplier 1, or it is rest but for errors
+    if (motion%is_free .and. all(map%largest_move <= sqrt(newton%tolerance)*map%unit_of_coordinate)) &
+      motion%is_trivial = motion%is_trivial .or. &
+                          all(abs(motion%multipliers - 1.0_wp) > sqrt(newton%tolerance*motion%growth))
+    if (motion%is_trivial) motion%repeats_after = 0.0_wp
     call judge_stability(newton%tolerance*motion%growth, motion)
     motion%product = real(product(motion%multipliers), wp)
     motion%knows_volume = map%volume_is_known
