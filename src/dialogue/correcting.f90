@@ -10,7 +10,7 @@ module mech9_correcting
   use mech9_draft, only: draft_type
   use mech9_known_names, only: add_known_names, add_word
   use mech9_conversation, only: conversation_type, going
-  use mech9_taking, only: take_answer
+  use mech9_taking, only: take_answer, settle_units
   implicit none
   private
   public :: show_faults, offer_correction, change, correction_help, correction_words
@@ -254,6 +254,7 @@ contains
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     character(len=*), intent(in) :: what                     !< number or name of the answer, or name and number of the group
     logical, intent(out) :: found                            !< there was something to remove
+    type(draft_type) :: before
     character(len=:), allocatable :: group, name, here
     integer :: place
 
@@ -266,6 +267,7 @@ contains
         call conversation%say('There is no such answer to remove; list shows the numbers of the answers.')
         return
       end if
+      before = interview%draft
       if (name == '') then
         call interview%draft%remove(group, place)
       else
@@ -282,5 +284,6 @@ contains
     end associate
     call conversation%keep()
     call conversation%say('Removed.')
+    if (group == 'mechanism') call settle_units(conversation, before)
   end subroutine remove
 end module mech9_correcting

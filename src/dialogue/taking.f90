@@ -1,7 +1,8 @@
 !> Check answers to questions as the reader of data files does, and note them.
 module mech9_taking
   use mech9_kinds, only: wp, radians_per_degree
-  use mech9_text, only: to_text, lower, nearest_name
+  use mech9_text, only: string_type, to_text, lower, nearest_name
+  use mech9_counted, only: counted
   use mech9_grammar, only: group_table, item_table, item_row_type, words_of
   use mech9_grammar_rows, only: refers_to, refers_to_link
   use mech9_diagnostics, only: printable
@@ -19,11 +20,12 @@ module mech9_taking
   use mech9_topics, only: topics
   use mech9_planar_links, only: is_placed, point_in_plane, gives_lengths, plane_so_far, point_of_plane
   use mech9_questions, only: question_type, entry_name, label_of, ask_item, ask_seldom, ask_way, ask_joints, ask_geometry, ask_units
-  use mech9_unit_answer, only: give_units
-  use mech9_conversation, only: conversation_type
+  use mech9_unit_answer, only: is_unit_row, give_units
+  use mech9_converted_numbers, only: convert_numbers, changed_units
+  use mech9_conversation, only: conversation_type, going
   implicit none
   private
-  public :: take_answer, keep_answer, move_on
+  public :: take_answer, keep_answer, move_on, settle_units
 
   character(len=*), parameter :: what_lengths_mean = &
     'Each link has a system of its own: the origin is in its pair of the lowest number, and x leads to its next pair. All axes '// &
@@ -36,8 +38,10 @@ contains
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
     character(len=*), intent(in) :: line                     !< the answer, without blanks around it
     type(question_type) :: question
+    type(draft_type) :: before
 
     question = conversation%interview%due()
+    before = conversation%interview%draft
     select case (question%kind)
     case (ask_item)
       call take_item(conversation, question, line)
@@ -54,7 +58,73 @@ contains
     case default
       call take_guesses(conversation, line)
     end select
+    if (question%kind == ask_units) then
+      call settle_units(conversation, before)
+    else if (question%kind == ask_item) then
+      if (is_unit_row(item_table(question%row))) call settle_units(conversation, before)
+    end if
   end subroutine take_answer
+
+  !> Ask whether the numbers are to be converted, or their digits are right as they stand, where a unit of the file has changed.
+  subroutine settle_units(conversation, before)
+    class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands, with the new units
+    type(draft_type), intent(in) :: before                   !< the answers with the units before
+    type(draft_type) :: converted
+    type(string_type) :: words(2)
+    character(len=:), allocatable :: old, new, left, line
+    integer :: count
+
+    if (conversation%state /= going) return
+    associate (draft => conversation%interview%draft)
+      call changed_units(units_of_draft(before), units_of_draft(draft), old, new)
+      if (old == '') return
+      converted = draft
+      call convert_numbers(units_of_draft(before), units_of_draft(draft), converted, count, left)
+    end associate
+    if (count == 0) return
+    call conversation%say('The numbers so far are in '//old//'. They can be converted to '//new//', or keep their digits.')
+    words(1)%text = 'convert'
+    words(2)%text = 'keep'
+    do
+      call conversation%listen('  convert or keep [keep]: ', words, line)
+      if (conversation%state /= going) return
+      line = lower(line(:min(len(line), 8)))
+      if (line == '' .or. line == 'keep') then
+        call conversation%say('The digits are kept: they are in '//new//' now.')
+        return
+      end if
+      if (line == 'convert') exit
+      call conversation%say('convert turns 80 mm into 0.08 m; keep leaves the digits 80, which then mean 80 of the new unit.')
+    end do
+    if (left == '') then
+      conversation%interview%draft = converted
+      call conversation%say('Converted: '//counted(count, 'answer')//'.')
+    else
+      call take_back_units(before, conversation%interview%draft)
+      call conversation%say('The units of these numbers depend on others, or they stand in files: '//left//'. '// &
+                            'Nothing is converted, and the units are '//old//' as before.')
+    end if
+    call conversation%interview%refresh(label_of(conversation%interview%due()))
+    call conversation%keep()
+  end subroutine settle_units
+
+  !> Give a draft the units that another one has.
+  pure subroutine take_back_units(before, draft)
+    type(draft_type), intent(in) :: before        !< with the units
+    type(draft_type), intent(inout) :: draft      !< gets them
+    character(len=:), allocatable :: name
+    integer :: i
+
+    do i = 1, size(item_table)
+      if (.not. is_unit_row(item_table(i))) cycle
+      name = trim(item_table(i)%name)
+      if (before%has('mechanism', 1, name)) then
+        call draft%give('mechanism', 1, name, before%value('mechanism', 1, name))
+      else
+        call draft%take_away('mechanism', 1, name)
+      end if
+    end do
+  end subroutine take_back_units
 
   !> Check and note the answer to a question about a name.
   subroutine take_item(conversation, question, line)

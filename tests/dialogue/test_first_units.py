@@ -7,7 +7,7 @@ import pytest
 import data_file
 import dialogue_scripts as scripts
 from conversations import answers_of, first_missing, in_one_line, piped
-from mech9_cases import read_table, text_of
+from mech9_cases import read_table, table_of, text_of
 
 UNITS = scripts.PRESS_UNITS[0]
 BEFORE = scripts.PRESS[:3]
@@ -80,31 +80,49 @@ def test_press_in_millimetres(checks, mech9k, folder):
         checks.true(part in text, f'the data file has {part}', text)
 
 
+ASKED = 'convert or keep [keep]: '
+
+
+def changed(checks, program, folder, steps, said):
+    """The data file of the press after steps at its end."""
+    steps = scripts.PRESS[:-4] + steps + [*scripts.END[:1], ('[both]', 'save'), ('data file [', '')]
+    done = piped(program, folder=folder, answers=answers_of(steps))
+    checks.true(first_missing(done.stderr, steps) is None, 'all prompts come', done.stderr)
+    for words in said:
+        checks.true(words in in_one_line(done.stderr), words, done.stderr)
+    return os.path.join(folder, 'crank_press.nml')
+
+
 def test_later_change(checks, mech9k, folder):
-    """A unit is changed at the end, as any other answer is."""
-    steps = scripts.PRESS[:-4] + [('Enter if all is right', 'mechanism length_unit = in'), ('Enter if all is right', 'mechanism angle_unit'),
-                                  ('angle_unit [deg]: ', 'rad'), *scripts.END[:1], ('[both]', 'save'), ('data file [', '')]
-    done = piped(mech9k, folder=folder, answers=answers_of(steps))
-    checks.true(first_missing(done.stderr, steps) is None, 'all prompts come', done.stderr)
-    text = text_of(os.path.join(folder, 'crank_press.nml'))
+    """A unit is changed at the end, as any other answer is; the digits are kept where that is the answer."""
+    path = changed(checks, mech9k, folder, [
+        ('Enter if all is right', 'mechanism length_unit = in'), (ASKED, ''), ('Enter if all is right', 'mechanism angle_unit'),
+        ('angle_unit [deg]: ', 'rad'), (ASKED, '?'), (ASKED, 'keep')], ['The numbers so far are in mm.', 'The digits are kept: they are in in now.'])
+    text = text_of(path)
     checks.true("length_unit='in'" in text and "angle_unit='rad'" in text, 'both are changed', text)
+    checks.true('point=35' in text, 'the digits are as typed', text)
 
 
-@pytest.mark.parametrize('units, length, doubted', [('', '120', True), ('m', '120', False), ('mm', '120', False), ('in', '120', False)])
-def test_lengths_without_a_named_unit(checks, mech9k, folder, units, length, doubted):
-    """120 is asked about where Enter left the metre; not where a unit was named, be it the metre itself."""
-    steps = scripts.PRESS[:3] + [(UNITS, units)] + scripts.PRESS[4:14] + [('on link 2, length', length)]
-    done = piped(mech9k, folder=folder, answers=answers_of(steps))
-    checks.equal('this one is 120 m' in in_one_line(done.stderr), doubted, units)
+def test_converted_numbers(checks, mech9k, folder):
+    """The press in inches, radians and revolutions a minute, converted: the same motion as that of the closed triangle in millimetres."""
+    path = changed(checks, mech9k, folder, [
+        ('Enter if all is right', 'mechanism length_unit = in'), (ASKED, 'convert'), ('Enter if all is right', 'mechanism angle_unit = rad'),
+        (ASKED, 'convert'), ('Enter if all is right', 'mechanism rate_unit = rpm'), (ASKED, 'convert')], ['Converted: '])
+    found = table_of(mech9k, path)
+    place, angle = slider(2*np.pi*found['t'])
+    checks.near(25.4*found['ram.x'], place, 1e-11, 'ram')
+    checks.near(np.degrees(found['L3.phi']), angle, 1e-11, 'angle of the rod')
+    checks.near(found['dq1'], np.full(len(place), 60), 1e-12, 'rate of the crank')
 
 
-@pytest.mark.parametrize('units, example', [
-    ('', '0.1, 0.05 (begins at 0.1 m and slides 0.05 m each second)'), ('mm', '100, 50 (begins at 0.1 m and slides 0.05 m each second)'),
-    ('in deg', '3.93701, 1.9685 (begins at 0.1 m')])
-def test_examples_in_these_units(checks, mech9k, folder, units, example):
-    """The example that ? gives is right as an answer: 0.1 m is 100 mm and 100/25.4 in."""
-    steps = BEFORE[:1] + [('links: ', '2'), ('coordinates: ', '1'), (UNITS, units), ('[pairs]', ''), ('links of pair 1', '1 2'), ('cq: ', '1'),
-                          ('which of them', ''), ('kind', 'slide'), ('point', ''), ('axis', 'x'), ('kind [polynomial]', ''), ('coefficients', '?')]
-    done = piped(mech9k, folder=folder, answers=answers_of(steps))
-    checks.true(first_missing(done.stderr, steps) is None, 'all prompts come', done.stderr)
-    checks.true(example in in_one_line(done.stderr), example, done.stderr)
+def test_numbers_of_unknown_units(checks, mech9k, folder):
+    """A parameter has the unit of what it sets: nothing is converted, and the unit comes back."""
+    path = os.path.join(folder, 'press.nml')
+    with open(path, 'w', encoding='utf-8') as file:
+        file.write("""&mechanism length_unit='mm' / &structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 / &drive coordinate=1, kind='polynomial', coefficients=0, 1 /
+&point name='P', link=2, position=35,0,0 / &parameter name='r', sets='point.position(1)', value=35 /
+""")
+    done = piped(mech9k, '--edit', path, folder=folder, answers='mechanism length_unit = m\nconvert\nmechanism length_unit\n\n\nneither\n')
+    said = in_one_line(done.stderr)
+    checks.true('parameter 1 value. Nothing is converted, and the units are mm as before.' in said and 'length_unit [mm]' in said, 'refused', done.stderr)
