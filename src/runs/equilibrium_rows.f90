@@ -10,6 +10,7 @@ module mech9_equilibrium_rows
   use mech9_single_reactions, only: find_single_reactions
   use mech9_result_units, only: si_unit, unit_name
   use mech9_columns, only: columns_type
+  use mech9_contact_columns, only: append_contacts, fill_contacts
   use mech9_force_record, only: force_record_type, fill_wrenches
   use mech9_linearised_equilibrium, only: equilibrium_type
   use mech9_mode_shapes, only: shape_of_mode
@@ -37,6 +38,7 @@ contains
     call columns%append_motors(model%mechanism)
     call forces%append_magnitudes(model, columns)
     call columns%append_stops(model%mechanism)
+    call append_contacts(columns, model%mechanism)
     call columns%append('stable', '', '1 where no small deviation grows, else 0')
     call columns%append('growth', '1/s', 'largest real part of the eigenvalues of the linearised equations of motion')
   end function columns_of_equilibria
@@ -61,6 +63,7 @@ contains
       if (.not. allocated(err)) call columns%fill_motors(model%mechanism, list(i)%resting%state, rows(:, i), err)
       if (allocated(err)) return
       call columns%fill_stops(model%mechanism, list(i)%resting%state, rows(:, i))
+      call fill_contacts(columns, model%mechanism, list(i)%resting%plan, list(i)%resting%state, rows(:, i))
       rows(columns%count - 1, i) = merge(1.0_wp, 0.0_wp, list(i)%is_stable)
       rows(columns%count, i) = list(i)%modes%growth
       call columns%convert(rows(:, i))

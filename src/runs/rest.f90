@@ -1,6 +1,7 @@
 !> Equilibria of a model, from its assembly on: what --equilibrium, --modes and --linear find.
 module mech9_rest
   use mech9_kinds, only: wp
+  use mech9_text, only: to_text
   use mech9_error, only: error_type, raise, add_place, exit_data, exit_assembly, exit_interrupted
   use mech9_dynamics_failures, only: failure_no_inertia
   use mech9_model, only: model_type
@@ -13,6 +14,7 @@ module mech9_rest
   use mech9_resting_mechanism, only: resting_type
   use mech9_linearised_equilibrium, only: equilibrium_type
   use mech9_equilibria, only: find_equilibrium, find_equilibria
+  use mech9_contact_rest, only: has_rigid_contacts, find_rest_on_contacts, find_all_on_contacts, bearing_contact
   use mech9_explained_assembly, only: assemble_model
   use mech9_reactions, only: reactions_type
   use mech9_single_reactions, only: find_single_reactions
@@ -93,11 +95,13 @@ contains
     class(interruption_type), intent(in), optional :: interruption   !< is asked before each start
     type(equilibrium_type), allocatable :: found(:)
 
-    if (starts > 0) then
+    if (starts > 0 .and. has_rigid_contacts(model%mechanism)) then
+      call find_all_on_contacts(model, self%plan, self%start, starts, found, err, interruption)
+    else if (starts > 0) then
       call find_equilibria(model, self%plan, self%start, starts, found, err, interruption)
     else
       allocate (found(1))
-      call find_equilibrium(model%mechanism, model%problem%partition, self%plan, self%start, found(1), err)
+      call find_one(model, self%plan, self%start, found(1), err)
       if (allocated(err)) deallocate (found)
     end if
     if (model%mechanism%has_rigid_ends()) then
@@ -112,9 +116,49 @@ contains
           'stops, and no position of rest against a stop was found from the initial position; give another initial position')
       end if
     end if
+    if (.not. allocated(err)) call refuse_moving_drives(model, self%start, found, err)
     if (.not. allocated(err) .and. with_modes) call need_inertia(model, found(1), err)
     if (.not. allocated(err) .or. is_interruption(err)) call move_alloc(found, self%equilibria)
   end subroutine find
+
+  !> Find the position of rest to which a position leads, on contacts where these bear.
+  subroutine find_one(model, plan, start, found, err)
+    type(model_type), intent(in) :: model               !< the model
+    type(plan_type), intent(in) :: plan                 !< its plan, in space
+    type(state_type), intent(in) :: start               !< closed, with the motion of the driven coordinates
+    type(equilibrium_type), intent(out) :: found        !< the position of rest
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+
+    if (has_rigid_contacts(model%mechanism)) then
+      call find_rest_on_contacts(model, plan, start, found, err)
+    else
+      call find_equilibrium(model%mechanism, model%problem%partition, plan, start, found, err)
+    end if
+  end subroutine find_one
+
+  !> Fail where a rigid contact bears while a drive moves: the gap would have to stay closed beside the drive.
+  subroutine refuse_moving_drives(model, start, found, err)
+    type(model_type), intent(in) :: model               !< the model
+    type(state_type), intent(in) :: start               !< with the motion of the driven coordinates
+    type(equilibrium_type), intent(in) :: found(:)      !< positions of rest
+    type(error_type), allocatable, intent(out) :: err   !< allocated where one is refused
+    integer :: i, k
+
+    associate (is_driven => model%problem%partition%kind == driven_coordinate)
+      k = findloc(is_driven .and. (abs(start%dq) > 0.0_wp .or. abs(start%ddq) > 0.0_wp), .true., dim=1)
+    end associate
+    if (k == 0) return
+    do i = 1, size(found)
+      associate (number => bearing_contact(model%mechanism, found(i)))
+        if (number == 0) cycle
+        call raise(err, exit_data, 'contact '//to_text(number)//' bears at rest while the drive of coordinate '//to_text(k)// &
+                   ' moves; hold the drive, or make the contact compliant by stiffness=')
+      end associate
+      err%place = model%mechanism%contacts(findloc(model%mechanism%contacts%number, bearing_contact(model%mechanism, found(i)), &
+                                                   dim=1))%place
+      return
+    end do
+  end subroutine refuse_moving_drives
 
   !> Leave out positions of rest that lie behind rigid stops.
   subroutine leave_out_behind_stops(model, found)
@@ -188,7 +232,7 @@ contains
       allocate (rest%plan, rest%start)
       call assemble_at_rest(rest, held, err)
       if (.not. allocated(err)) &
-        call find_equilibrium(held%mechanism, held%problem%partition, rest%plan, rest%start, found, err)
+        call find_one(held, rest%plan, rest%start, found, err)
       serves = .not. allocated(err)
       if (serves) exit
       deallocate (rest%plan, rest%start)

@@ -111,6 +111,7 @@ contains
     starts = 0
     if (options%has('starts') .and. options%has('equilibrium')) starts = options%number('starts', 1)
     call rest%find(model, starts, .not. options%has('equilibrium'), err, signal_interruption_type())
+    if (allocated(err) .and. .not. options%has('quiet')) call print_left_out(error_unit, model%mechanism)
     if (allocated(err) .or. .not. options%has('mode')) return
     if (options%number('mode', 1) > rest%equilibria(1)%modes%count) &
       call raise(err, exit_usage, 'there is no mode '//options%argument('mode')//'; the modes are 1 to '// &

@@ -41,8 +41,9 @@ contains
     character(len=:), allocatable :: words
     integer :: i
 
-    words = words_of_stability(found)
+    words = words_of_stability(mechanism, found)
     if (.not. allocated(found%resting%state)) return
+    if (allocated(found%resting%state%contact_force)) call add_contacts(mechanism, found, words)
     if (.not. allocated(found%resting%state%stop_force)) return
     associate (force => found%resting%state%stop_force)
       do i = 1, size(force)
@@ -55,14 +56,47 @@ contains
     end associate
   end function words_about
 
+  !> Add the contacts that bear.
+  subroutine add_contacts(mechanism, found, words)
+    type(mechanism_type), intent(in) :: mechanism             !< the mechanism
+    type(equilibrium_type), intent(in) :: found               !< the equilibrium
+    character(len=:), allocatable, intent(inout) :: words     !< get them
+    real(wp) :: force
+    integer :: i, k
+
+    do i = 1, maxval(mechanism%contacts%number)
+      force = 0.0_wp
+      do k = 1, size(mechanism%contacts)
+        ! sides of one path have their forces together
+        if (mechanism%contacts(k)%number == i) force = force + norm2(found%resting%state%contact_force(:, k))
+      end do
+      if (force > 0.0_wp) words = words//'; contact '//to_text(i)//' bears '// &
+        to_text(force/mechanism%units%size_of('N'), 5)//' '//trim(mechanism%units%name_of('N'))
+    end do
+  end subroutine add_contacts
+
+  !> The things that hold coordinates.
+  function holders(mechanism, found) result(words)
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(equilibrium_type), intent(in) :: found     !< the equilibrium
+    character(len=:), allocatable :: words
+
+    words = 'stops'
+    if (.not. allocated(found%resting%state)) return
+    if (.not. allocated(found%resting%state%contact_force)) return
+    words = 'contacts'
+    if (allocated(found%resting%state%stop_force)) words = 'stops and contacts'
+  end function holders
+
   !> The stability of an equilibrium in words.
-  function words_of_stability(found) result(words)
-    type(equilibrium_type), intent(in) :: found   !< the equilibrium
+  function words_of_stability(mechanism, found) result(words)
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(equilibrium_type), intent(in) :: found     !< the equilibrium
     character(len=:), allocatable :: words
 
     if (allocated(found%resting%free)) then
       if (size(found%resting%free) == 0) then
-        words = 'an equilibrium in which stops hold all coordinates'
+        words = 'an equilibrium in which '//holders(mechanism, found)//' hold all coordinates'
         return
       end if
     end if

@@ -18,7 +18,7 @@ module mech9_linearised_equilibrium
   use mech9_resting_mechanism, only: resting_type, find_stiffness, try_step, return_to_coordinates, refuse_singular
   implicit none
   private
-  public :: equilibrium_type, linearise, copy_equilibrium
+  public :: equilibrium_type, linearise, linearise_in_place, let_follow, copy_equilibrium
 
   !> A position of equilibrium. Matrices are in SI units, of the coordinates `resting%free`.
   type :: equilibrium_type
@@ -26,6 +26,7 @@ module mech9_linearised_equilibrium
     real(wp), allocatable :: inertia(:, :)      !< M [kg m^2, kg m, kg]
     real(wp), allocatable :: damping(:, :)      !< C [N m s/rad, N s/m]
     real(wp), allocatable :: stiffness(:, :)    !< K [N m/rad, N/m]
+    real(wp) :: damping_magnitude = 0.0_wp      !< sum of the magnitudes of the terms of the damping, in units of the plan [J s]
     type(eigenmodes_type) :: modes              !< of M x'' + C x' + K x = 0; shapes in SI units
     !> No root grows beyond round-off; where a coordinate has no inertia, no stiffness is negative beyond round-off.
     logical :: is_stable = .false.
@@ -49,38 +50,61 @@ contains
     type(partition_type), intent(in) :: partition       !< with the coordinates of the data file
     type(equilibrium_type), intent(inout) :: found      !< with its position; gets all else
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    real(wp), allocatable, dimension(:, :) :: m, c, per_unit
-    real(wp) :: c_magnitude
-    integer :: i, n, massless
 
     call release_setpoints(mechanism, partition, found%resting, err)
     if (.not. allocated(err)) &
       call return_to_coordinates(mechanism, partition, fair_conditioning, found%resting, err)
-    if (allocated(err)) return
+    if (.not. allocated(err)) call linearise_in_place(mechanism, found, err)
+  end subroutine linearise
+
+  !> Linearise in the present coordinates, with the motors in the states that they have. Fails as `linearise` does.
+  subroutine linearise_in_place(mechanism, found, err)
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(equilibrium_type), intent(inout) :: found      !< with its position; gets all else
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    real(wp), allocatable, dimension(:, :) :: m, c
+    integer :: n, massless
+
     call refuse_singular(found%resting, err)
     if (.not. allocated(err)) call find_stiffness(mechanism, found%resting, err)
     if (allocated(err)) return
     associate (resting => found%resting)
       n = size(resting%free)
       allocate (m(n, n), c(n, n))
-      call find_matrix(mechanism, resting%plan, resting%state, by_rate, resting%free, resting%linearisation, c, c_magnitude, err)
+      call find_matrix(mechanism, resting%plan, resting%state, by_rate, resting%free, resting%linearisation, c, &
+                       found%damping_magnitude, err)
       if (allocated(err)) return
       call find_inertia(mechanism, resting, m, massless, err)
       if (allocated(err)) return
       if (massless == 0) then
-        call find_eigenmodes(m, c, resting%stiffness, round_off*c_magnitude, round_off*resting%stiffness_magnitude, found%modes)
+        call find_eigenmodes(m, c, resting%stiffness, round_off*found%damping_magnitude, round_off*resting%stiffness_magnitude, &
+                             found%modes)
         massless = found%modes%without_inertia
       end if
       if (massless > 0) then
         call judge_statics(mechanism, massless, m, found, err)
         return
       end if
-      if (size(mechanism%motors) > 0) call add_motors(mechanism, m, c, found, err)
-      if (allocated(err)) return
       found%without_inertia = 0
-      found%is_stable = .not. found%modes%growth > 0.0_wp
-      allocate (per_unit(n, n))
-      do i = 1, n
+      if (size(mechanism%motors) > 0) call couple_motors(mechanism, resting, found%motors, err)
+    end associate
+    if (.not. allocated(err)) call take_matrices(m, c, found)
+  end subroutine linearise_in_place
+
+  !> Take inertia and damping, and find what motors and units change of the modes.
+  subroutine take_matrices(m, c, found)
+    real(wp), intent(in) :: m(:, :)                     !< (n,n) inertia [J s^2]
+    real(wp), intent(in) :: c(:, :)                     !< (n,n) damping [J s]
+    type(equilibrium_type), intent(inout) :: found      !< with its stiffness, modes and motors; gets the matrices and the stability
+    real(wp) :: per_unit(size(m, 1), size(m, 1))
+    integer :: i
+
+    if (allocated(found%motors%states)) then
+      if (size(found%motors%states) > 0) call add_motors(m, c, found)
+    end if
+    found%is_stable = .not. found%modes%growth > 0.0_wp
+    associate (resting => found%resting)
+      do i = 1, size(m, 1)
         per_unit(:, i) = 1.0_wp/(resting%plan%unit_of(resting%free)*resting%plan%unit_of(resting%free(i)))
         found%modes%shapes(i, :found%modes%count) = found%modes%shapes(i, :found%modes%count)*resting%plan%unit_of(resting%free(i))
       end do
@@ -88,21 +112,17 @@ contains
       found%damping = per_unit*c
       found%stiffness = per_unit*resting%stiffness
     end associate
-  end subroutine linearise
+  end subroutine take_matrices
 
-  !> Couple the motors with the motion, and find the modes again where these have states.
-  subroutine add_motors(mechanism, m, c, found, err)
-    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+  !> Couple the states of motors with the motion, and find the modes again.
+  subroutine add_motors(m, c, found)
     real(wp), intent(in) :: m(:, :)                     !< (n,n) inertia [J s^2]
     real(wp), intent(in) :: c(:, :)                     !< (n,n) damping [J s]
-    type(equilibrium_type), intent(inout) :: found      !< with its stiffness; gets coupling and modes
-    type(error_type), allocatable, intent(out) :: err   !< allocated if the law of a motor has no value
+    type(equilibrium_type), intent(inout) :: found      !< with its stiffness and the coupling of motors; gets the modes
     real(wp), dimension(size(m, 1), size(m, 1)) :: factors, k, damping
     real(wp), allocatable :: force(:, :), by_position(:, :), by_rate(:, :)
     integer :: failed_at, i
 
-    call couple_motors(mechanism, found%resting, found%motors, err)
-    if (allocated(err) .or. size(found%motors%states) == 0) return
     associate (unit => found%resting%plan%unit_of(found%resting%free), motors => found%motors)
       force = motors%force_by_state
       by_position = motors%rate_by_q
@@ -127,6 +147,53 @@ contains
     end do
     call find_motor_modes(k, damping, force, by_position, by_rate, found%motors%rate_by_state, found%modes)
   end subroutine add_motors
+
+  !> Let some free coordinates follow the others, as closed contacts make them do, and find the modes of these motions.
+  subroutine let_follow(kept, followers, follow, found)
+    integer, intent(in) :: kept(:)                      !< (k) places of the coordinates that stay free, among the free ones
+    integer, intent(in) :: followers(:)                 !< (h) places of the others
+    real(wp), intent(in) :: follow(:, :)                !< (h,k) their rates by the rates of those that stay free [rad, m]
+    type(equilibrium_type), intent(inout) :: found      !< linearised; changes
+    real(wp) :: along(size(found%resting%free), size(kept)), scaled(size(found%resting%free), size(kept))
+    real(wp), dimension(size(kept), size(kept)) :: m, c
+    integer :: i
+
+    associate (resting => found%resting)
+      along = 0.0_wp
+      do i = 1, size(kept)
+        along(kept(i), i) = 1.0_wp
+        along(followers, i) = follow(:, i)
+        scaled(:, i) = along(:, i)*resting%plan%unit_of(resting%free(kept(i)))/resting%plan%unit_of(resting%free)
+      end do
+      resting%stiffness = matmul(transpose(scaled), matmul(resting%stiffness, scaled))
+      resting%forces = matmul(resting%forces, scaled)
+      do i = 1, size(kept)
+        scaled(:, i) = along(:, i)*resting%plan%unit_of(resting%free(kept(i)))
+      end do
+      if (found%without_inertia == 0) then
+        m = matmul(transpose(scaled), matmul(found%inertia, scaled))
+        c = matmul(transpose(scaled), matmul(found%damping, scaled))
+      end if
+      resting%following = resting%free(followers)
+      resting%follow = follow
+      resting%free = resting%free(kept)
+      if (allocated(found%motors%states)) then
+        associate (motors => found%motors)
+          motors%force_by_state = matmul(transpose(along), motors%force_by_state)
+          motors%force_by_input = matmul(transpose(along), motors%force_by_input)
+          motors%rate_by_q = matmul(motors%rate_by_q, along)
+          motors%rate_by_dq = matmul(motors%rate_by_dq, along)
+        end associate
+      end if
+      if (found%without_inertia > 0) then
+        call judge_stiffness(found)
+      else
+        call find_eigenmodes(m, c, resting%stiffness, round_off*found%damping_magnitude, round_off*resting%stiffness_magnitude, &
+                             found%modes)
+        call take_matrices(m, c, found)
+      end if
+    end associate
+  end subroutine let_follow
 
   !> The inertia of the free coordinates, and one that moves no mass.
   subroutine find_inertia(mechanism, resting, m, massless, err)
@@ -155,9 +222,7 @@ contains
     real(wp), intent(in) :: m(:, :)                     !< (n,n) inertia of the free coordinates [J s^2]
     type(equilibrium_type), intent(inout) :: found      !< with its position and stiffness; gets its stability
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    real(wp), dimension(size(m, 1), size(m, 1)) :: elsewhere, vectors
-    real(wp) :: values(size(m, 1)), work(34*size(m, 1))
-    integer :: info
+    real(wp) :: elsewhere(size(m, 1), size(m, 1))
     logical :: has_inertia
 
     call look_elsewhere(mechanism, found%resting, elsewhere, has_inertia, err)
@@ -166,13 +231,23 @@ contains
       call refuse_lock(mechanism, found%resting, massless, find_lock(m, elsewhere), err)
       return
     end if
-    vectors = 0.5_wp*(found%resting%stiffness + transpose(found%resting%stiffness))
-    call dsyev('N', 'L', size(values), vectors, size(values), values, work, size(work), info)
-    found%is_stable = all(values >= -round_off*found%resting%stiffness_magnitude)
+    call judge_stiffness(found)
     found%without_inertia = found%resting%free(massless)
     found%modes%count = 0
     found%modes%growth = ieee_value(found%modes%growth, ieee_quiet_nan)
   end subroutine judge_statics
+
+  !> Judge the stability by the stiffness alone.
+  subroutine judge_stiffness(found)
+    type(equilibrium_type), intent(inout) :: found      !< with its stiffness; gets its stability
+    real(wp), dimension(size(found%resting%free), size(found%resting%free)) :: vectors
+    real(wp) :: values(size(vectors, 1)), work(34*size(vectors, 1))
+    integer :: info
+
+    vectors = 0.5_wp*(found%resting%stiffness + transpose(found%resting%stiffness))
+    if (size(values) > 0) call dsyev('N', 'L', size(values), vectors, size(values), values, work, size(work), info)
+    found%is_stable = all(values >= -round_off*found%resting%stiffness_magnitude)
+  end subroutine judge_stiffness
 
   !> Fail because coordinates have no inertia in this position alone.
   subroutine refuse_lock(mechanism, resting, massless, is_locked, err)

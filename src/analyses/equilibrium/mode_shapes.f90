@@ -5,7 +5,7 @@ module mech9_mode_shapes
   use mech9_mechanism, only: mechanism_type
   use mech9_state, only: state_type
   use mech9_motion_variation, only: vary_position
-  use mech9_resting_mechanism, only: resting_type, try_step
+  use mech9_resting_mechanism, only: resting_type, try_step, move_along
   use mech9_linearised_equilibrium, only: equilibrium_type
   implicit none
   private
@@ -24,7 +24,7 @@ contains
     associate (resting => equilibrium%resting, variation => equilibrium%resting%linearisation%variation)
       do i = 1, size(resting%free)
         call variation%clear()
-        variation%q(resting%free(i)) = 1.0_wp
+        call move_along(resting, i, variation%q)
         call vary_position(resting%plan, resting%state, resting%linearisation%motion, variation)
         shape = shape + equilibrium%modes%shapes(i, mode)*variation%q/resting%plan%result_unit
       end do

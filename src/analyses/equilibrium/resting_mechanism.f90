@@ -20,7 +20,7 @@ module mech9_resting_mechanism
   implicit none
   private
   public :: resting_type, put_to_rest, find_stiffness, try_step, choose_coordinates, return_to_coordinates, refuse_singular, &
-    is_balanced, is_zero_force, stand_at, copy_resting
+    is_balanced, is_zero_force, stand_at, copy_resting, move_along
 
   !> A mechanism at rest. Forces and stiffnesses of the free coordinates count in units of the plan (rad, or lengths of the
   !> mechanism), so that all are energies.
@@ -32,6 +32,8 @@ module mech9_resting_mechanism
     integer, allocatable :: free(:)               !< (n) numbers of the free coordinates, ascending
     real(wp), allocatable :: forces(:)            !< (n) that keep the mechanism in its position; zero in equilibrium [J]
     real(wp), allocatable :: stiffness(:, :)      !< (n,n) their derivatives by the free coordinates [J]
+    integer, allocatable :: following(:)          !< (h) coordinates that closed contacts let follow; not allocated: none
+    real(wp), allocatable :: follow(:, :)         !< (h,n) their rates by those of the free coordinates [rad, m]
     real(wp) :: stiffness_magnitude = 0.0_wp      !< sum of the magnitudes of the terms of the stiffness [J]
   end type resting_type
 
@@ -145,7 +147,17 @@ contains
     if (.not. moved) deallocate (err)
   end subroutine try_step
 
-  !> Drives that move the free coordinates by a step within 1 s and hold the others.
+  !> The changes of independent coordinates with one free coordinate: closed contacts let others follow.
+  pure subroutine move_along(resting, i, changes)
+    type(resting_type), intent(in) :: resting       !< the mechanism at rest
+    integer, intent(in) :: i                        !< place of the free coordinate
+    real(wp), intent(inout) :: changes(:)           !< (M) gets them per unit of it [rad, m]; others stay
+
+    changes(resting%free(i)) = 1.0_wp
+    if (allocated(resting%follow)) changes(resting%following) = resting%follow(:, i)
+  end subroutine move_along
+
+  !> Drives that move the free coordinates by a step within 1 s and hold the others, but for those that follow.
   subroutine drive_step(resting, step, drives)
     type(resting_type), intent(in) :: resting                      !< the mechanism at rest
     real(wp), intent(in) :: step(:)                                !< (n) of the free coordinates, in their units
@@ -154,6 +166,7 @@ contains
 
     distances = 0.0_wp
     distances(resting%free) = step*resting%plan%unit_of(resting%free)
+    if (allocated(resting%follow)) distances(resting%following) = matmul(resting%follow, distances(resting%free))
     associate (independent => resting%plan%independent)
       call straight_drives(independent, resting%state%q(independent), distances(independent), drives)
     end associate

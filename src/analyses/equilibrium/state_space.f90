@@ -10,6 +10,7 @@ module mech9_state_space
   use mech9_pose, only: transformed
   use mech9_mechanism, only: mechanism_type
   use mech9_motion_variation, only: vary_motion
+  use mech9_resting_mechanism, only: move_along
   use mech9_resting_motors, only: motor_coupling_type
   use mech9_linearised_equilibrium, only: equilibrium_type
   implicit none
@@ -135,11 +136,11 @@ contains
       call variation%clear()
       select case (order)
       case (0)
-        variation%q(resting%free(i)) = 1.0_wp
+        call move_along(resting, i, variation%q)
       case (1)
-        variation%dq(resting%free(i)) = 1.0_wp
+        call move_along(resting, i, variation%dq)
       case default
-        variation%ddq(resting%free(i)) = 1.0_wp
+        call move_along(resting, i, variation%ddq)
       end select
       call vary_motion(resting%plan, resting%state, resting%linearisation%motion, variation)
       three(:, 0) = variation%q(recorded)

@@ -65,15 +65,17 @@ contains
     write (unit, '(a)') with_names(mechanism%names, words)
   end subroutine print_rest
 
-  !> Say that frictions and rigid contacts do not count in an equilibrium; nothing where there are none.
+  !> Say that the friction of pairs and contacts does not count in an equilibrium; nothing where there is none.
   subroutine print_left_out(unit, mechanism)
     integer, intent(in) :: unit                        !< the output unit
     type(mechanism_type), intent(in) :: mechanism      !< the mechanism
+    integer :: i
 
     if (mechanism%has_frictions()) write (unit, '(a)') &
       'friction counts as 0: with it, the mechanism may rest in other positions near an equilibrium, too'
     if (.not. mechanism%has_contacts()) return
-    if (any(mechanism%contacts%is_rigid)) write (unit, '(a)') &
-      'rigid contacts of links count as open: the mechanism may rest on them in other positions, and they may forbid this one'
+    if (any([(mechanism%contacts(i)%has_friction(), i=1, size(mechanism%contacts))])) write (unit, '(a)') &
+      'friction of contacts counts as 0, and closed ones slide: with it, the mechanism may rest in other positions near an '// &
+      'equilibrium, too, and may roll in place of sliding'
   end subroutine print_left_out
 end module mech9_friction_text
