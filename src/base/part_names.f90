@@ -176,10 +176,13 @@ contains
       return
     end if
     do i = 1, size(starts)
-      number = number_after(trim(starts(i)), text)
+      ! columns of modes end with parts of complex numbers: q4.re
+      point = index(text//'.', '.')
+      if (starts(i) /= 'q' .or. all(text(point:) /= ['   ', '.re', '.im'])) point = len(text) + 1
+      number = number_after(trim(starts(i)), text(:point - 1))
       name = name_in(names%coordinates, number)
       if (name == '') cycle
-      text = trim(name)//'.'//trim(ends(i))
+      text = trim(name)//'.'//trim(ends(i))//text(point:)
       return
     end do
     point = index(text, '.')

@@ -234,10 +234,15 @@ contains
     type(kept_rows_type), intent(in) :: kept              !< results of the last run
     character(len=*), intent(in) :: what                  !< the argument of --plot, with blanks or commas between names
     type(error_type), allocatable :: err
+    type(string_type), allocatable :: labels(:)
     character(len=:), allocatable :: request, target, said
     integer :: i
 
     if (.not. has_rows(conversation, kept)) return
+    labels = kept%names
+    do i = 1, size(labels)
+      call name_column(kept%parts, labels(i)%text)
+    end do
     request = what
     call number_columns(kept%parts, request)
     do i = 1, len(request)
@@ -245,7 +250,7 @@ contains
     end do
     target = request(:index(request//':', ':') - 1)
     if (.not. is_picture(target) .and. target /= 'term') request = 'term:'//request
-    call plot_columns(request, new_heading(kept%title, kept%names, kept%units), kept%rows(:, :kept%count), &
+    call plot_columns(request, new_heading(kept%title, kept%names, kept%units), labels, kept%rows(:, :kept%count), &
                       kept%events, kept%sentences, conversation%stem//'.svg', said, err)
     if (allocated(err)) said = err%message
     if (said /= '') call conversation%say(said)

@@ -4,7 +4,7 @@ module mech9_branch_task
   use mech9_error, only: error_type
   use mech9_json, only: json_type
   use mech9_text, only: string_type
-  use mech9_heading, only: heading_of
+  use mech9_heading, only: heading_type, heading_of
   use mech9_plot, only: picture_of_plot
   use mech9_branch_plot, only: branch_rows_type, draw_branch_plot, read_branch_plot
   use mech9_plot_request, only: plot_request_type
@@ -19,7 +19,7 @@ module mech9_branch_task
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
   use mech9_law_times, only: check_times_of_laws
-  use mech9_written_files, only: result_paths_type, find_result_paths
+  use mech9_written_files, only: result_paths_type, find_result_paths, list_plot_requests
   use mech9_branches, only: branches_found_type, find_branches, columns_of_branches
   use mech9_columns, only: columns_type
   use mech9_branches_report, only: add_branches
@@ -54,7 +54,7 @@ contains
       call find_branches(model, variable, options%argument('branch'), found, err, signal_interruption_type())
     if (found%count() > 0) then
       if (.not. options%has('quiet')) call tell(model, found)
-      if (paths%table /= '') call write_table(paths%table, model, found, of_files)
+      if (paths%table /= '') call write_table(paths%table, options%has('names'), model, found, of_files)
       if (paths%hdf5 /= '' .and. .not. allocated(of_files)) &
         call write_hdf5(paths%hdf5, options, model, found, diagnostics%sources(1)%text, of_files)
       if (.not. allocated(of_files)) call draw_plots(options, model, found, paths%table, of_files)
@@ -73,20 +73,24 @@ contains
     type(branches_found_type), intent(in) :: found       !< the branches
 
     if (model%mechanism%title /= '') write (error_unit, '(a)') model%mechanism%title
-    call print_branches(error_unit, found)
+    call print_branches(error_unit, found, model%mechanism%names)
     if (any(found%of == 'equilibrium')) call print_left_out(error_unit, model%mechanism)
   end subroutine tell
 
   !> Write the table.
-  subroutine write_table(path, model, found, err)
+  subroutine write_table(path, by_names, model, found, err)
     character(len=*), intent(in) :: path                 !< of the file; '-' is standard output
+    logical, intent(in) :: by_names                      !< columns are called by the names of pairs
     type(model_type), intent(in) :: model                !< the model
     type(branches_found_type), intent(in) :: found       !< the branches
     type(error_type), allocatable, intent(out) :: err    !< allocated if the file cannot be written
     type(error_type), allocatable :: at_close
     type(table_type) :: table
+    type(heading_type) :: heading
 
-    call table%open(path, heading_of(model%mechanism%title, found%columns), name_and_version(model%program), err)
+    heading = heading_of(model%mechanism%title, found%columns)
+    if (by_names) call heading%call_by_names(model%mechanism%names)
+    call table%open(path, heading, name_and_version(model%program), err)
     if (allocated(err)) return
     call table%write_rows(found%rows, err)
     call table%close(at_close)
@@ -127,9 +131,11 @@ contains
     logical :: is_lacking
     integer :: i
 
-    call options%arguments('plot', requests)
+    call list_plot_requests(options, model%mechanism%names, requests)
     if (size(requests) == 0) return
     branches%heading = heading_of(model%mechanism%title, found%columns)
+    branches%labels = branches%heading
+    call branches%labels%call_by_names(model%mechanism%names)
     branches%rows = found%rows
     branches%stable = found%stable
     do i = 1, size(requests)
@@ -150,7 +156,7 @@ contains
     type(string_type), allocatable :: requests(:)
     integer :: i, j
 
-    call options%arguments('plot', requests)
+    call list_plot_requests(options, model%mechanism%names, requests)
     do j = 1, size(model%parameters)
       if (model%parameters(j)%name /= options%argument('branch')) cycle
       columns = columns_of_branches(model, model%parameters(j), .true., .true.)

@@ -3,6 +3,7 @@ module mech9_branch_words
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: to_text
+  use mech9_part_names, only: part_names_type, add_names
   use mech9_counted, only: counted
   use mech9_explanation, only: explain
   use mech9_curve_branch, only: branch_end_type, ends_low, ends_high, ends_points, ends_closed, ends_range, ends_failed, &
@@ -16,9 +17,11 @@ module mech9_branch_words
 contains
 
   !> Print a few lines for each branch.
-  subroutine print_branches(unit, found)
+  subroutine print_branches(unit, found, names)
     integer, intent(in) :: unit                          !< Fortran unit to write to
     type(branches_found_type), intent(in) :: found       !< the branches
+    type(part_names_type), intent(in) :: names           !< of links and pairs
+    character(len=:), allocatable :: words
     integer :: b, i, at
 
     at = 0
@@ -28,8 +31,10 @@ contains
           to_text(first(3), 8)//' to '//to_text(found%rows(3, at + branch%count), 8)//'; '//words_of_ends(found, b)
         do i = 1, branch%count
           if (branch%kind(i) == 0) cycle
+          words = coordinates(found, at + i)
+          call add_names(names, words)
           write (unit, '(a)') '  '//name_of_kind(branch%kind(i))//' at '//found%parameter//' = '// &
-            to_text(found%rows(3, at + i), 12)//', point '//to_text(i)//coordinates(found, at + i)//period(found, at + i)
+            to_text(found%rows(3, at + i), 12)//', point '//to_text(i)//words//period(found, at + i)
         end do
         at = at + branch%count
       end associate

@@ -16,7 +16,7 @@ module mech9_equilibrium_task
   use mech9_film, only: film_type, new_film
   use mech9_columns, only: columns_type
   use mech9_table, only: table_type
-  use mech9_heading, only: heading_of
+  use mech9_heading, only: heading_type, heading_of
   use mech9_kept_rows, only: kept_rows_type
   use mech9_hdf5_file, only: hdf5_file_type
   use mech9_structure_layout, only: write_structure, write_coordinates
@@ -171,11 +171,14 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if the file cannot be written
     type(error_type), allocatable :: at_close
     type(table_type) :: table
+    type(heading_type) :: heading
     character(len=:), allocatable :: path
 
     path = options%table_of_answer()
     if (path == '') return
-    call table%open(path, heading_of(model%mechanism%title, columns), 'mech9d '//version, err)
+    heading = heading_of(model%mechanism%title, columns)
+    if (options%has('names')) call heading%call_by_names(model%mechanism%names)
+    call table%open(path, heading, 'mech9d '//version, err)
     if (allocated(err)) return
     call table%write_rows(rows, err)
     call table%close(at_close)

@@ -163,3 +163,43 @@ def test_values_of_coordinates_have_names(checks, mech9k, tmp_path):
     text = text.replace('point=0.9,0,0', 'point=1.9,0,0').replace('point=0.3,0,0', 'point=0.6,0,0')
     done = run(mech9k, write(tmp_path, text), '--table', os.devnull, '--set', 'time.end=2')
     checks.true(done.returncode == 6 and ' at q1 (A) = ' in done.stderr, 'the dead point is told', done.stderr)
+
+
+SWING = """&mechanism title='swing' /
+&structure cq=1 /
+&pair coordinate=1, name='hip', links=1,2, kind='revolute', axis=0,0,1 /
+&body link=2, mass=1, centre=0,1,0 /
+&gravity acceleration=0,-9.81,0 /
+&load kind='coordinate', coordinate='hip', stiffness=5 /
+&parameter name='k', sets='load(1).stiffness', value=5, low=2, high=20 /
+&initial coordinate='hip', position=0.1 /
+&time end=2, intervals=4 /
+"""
+
+
+def heading_of(path):
+    with open(path, encoding='utf-8') as file:
+        return next(line for line in file if not line.startswith('#')).split()
+
+
+def test_names_in_other_tables_and_plots(checks, mech9d, tmp_path):
+    """Columns of sections, equilibria, modes and branches by the names of pairs, also in requests for plots, whose labels have them."""
+    section = SWING + "&section column='hip.dq', value=0, table='section.dat' /\n"
+    done = run(mech9d, write(tmp_path, section), '--quiet', '--names', '--table', 'run.dat', '--plot', 'run.svg:hip.q', '--plot', 'points.svg:section:hip.q',
+               folder=tmp_path)
+    checks.equal(done.returncode, DONE, done.stderr)
+    checks.equal(heading_of(tmp_path / 'section.dat')[2:4], ['hip.q', 'hip.dq'], 'a section')
+    path = write(tmp_path, SWING + "&branch parameter='k', of='equilibrium' /\n", 'branch.nml')
+    done = run(mech9d, path, '--names', '--branch', 'k', '--table', 'branch.dat', '--plot', 'branch.svg:hip.q', folder=tmp_path)
+    checks.true(done.returncode == DONE and ', q1 (hip) = 0' in done.stderr, 'words about branches', done.stderr)
+    checks.equal(heading_of(tmp_path / 'branch.dat')[3], 'hip.q', 'branches')
+    for option, names in (('--equilibrium', ['hip.q']), ('--modes', ['hip.q.re', 'hip.q.im'])):
+        done = run(mech9d, write(tmp_path, SWING), option, '--names', '--table', 'rest.dat', folder=tmp_path)
+        checks.true(done.returncode == DONE and set(names) <= set(heading_of(tmp_path / 'rest.dat')), option, done.stderr)
+    for plot, label in (('run', 'ylabel'), ('points', 'ylabel'), ('branch', 'ylabel')):
+        script = (tmp_path / f'{plot}.gp').read_text(encoding='utf-8')
+        checks.true(f"set {label} 'hip.q [rad]'" in script, f'the label of {plot}', script[-800:])
+    # the table of a run keeps its numbers without --names, and the label has the name
+    done = run(mech9d, write(tmp_path, SWING), '--quiet', '--table', 'plain.dat', '--plot', 'plain.svg:hip.q', folder=tmp_path)
+    script = (tmp_path / 'plain.gp').read_text(encoding='utf-8')
+    checks.true(done.returncode == DONE and "'q1'" in script and "set ylabel 'hip.q [rad]'" in script, 'a plot of a table with numbers', script[-800:])

@@ -198,7 +198,7 @@ contains
       do j = 1, size(document%groups(i)%items)
         associate (item => document%groups(i)%items(j))
           kind = refers_to(document%groups(i)%name, item%name)
-          if (item%name == 'of' .or. item%name == 'over') then
+          if (any(item%name == [character(len=6) :: 'of', 'over', 'column'])) then
             do k = 1, size(item%values)
               if (item%values(k)%kind == value_text) call number_columns(names, item%values(k)%text)
             end do

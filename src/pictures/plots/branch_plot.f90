@@ -21,6 +21,7 @@ module mech9_branch_plot
   !> The rows of branches, as they are drawn.
   type :: branch_rows_type
     type(heading_type) :: heading           !< title and columns: branch, point, parameter, then others; the last one is the type
+    type(heading_type) :: labels            !< the same with the names of columns that the picture shows
     real(wp), allocatable :: rows(:, :)     !< (columns,rows)
     logical, allocatable :: stable(:)       !< (rows) the position is stable
   end type branch_rows_type
@@ -126,7 +127,7 @@ contains
     type(branch_rows_type), intent(in) :: branches        !< rows of all branches
     character(len=:), allocatable :: text
 
-    associate (names => branches%heading%names, units => branches%heading%units)
+    associate (names => branches%labels%names, units => branches%heading%units)
       text = 'set xlabel '//quoted(axis_label([curve%x], names, units))//line_end//'set format x '// &
              axis_format(ends_of(branches%rows(curve%x, :)))//line_end//'set ylabel '// &
              quoted(axis_label([curve%y], names, units))//line_end//'set format y '// &

@@ -65,12 +65,14 @@ contains
     self%is_open = .true.
   end subroutine open_plot
 
-  !> Call the columns by other names in the plot than in its request.
-  subroutine call_columns(self, names)
+  !> Call the columns by other names than in the request.
+  subroutine call_columns(self, names, labels)
     class(plot_type), intent(inout) :: self            !< open
-    type(string_type), intent(in) :: names(:)          !< of all columns of the results
+    type(string_type), intent(in) :: names(:)          !< of all columns, as the table has them
+    type(string_type), intent(in) :: labels(:)         !< of all columns, as the picture shows them
 
     self%data%names = names
+    self%data%labels = labels
   end subroutine call_columns
 
   !> Keep the values of the next rows of results.
@@ -173,9 +175,10 @@ contains
   end subroutine picture_of_plot
 
   !> Plot rows that are in memory.
-  subroutine plot_columns(text, heading, rows, events, sentences, picture, said, err)
+  subroutine plot_columns(text, heading, labels, rows, events, sentences, picture, said, err)
     character(len=*), intent(in) :: text                !< request in the form of the argument of --plot
     type(heading_type), intent(in) :: heading           !< title, and columns of the results, the time first
+    type(string_type), intent(in) :: labels(:)          !< names of the columns as the plot shows them
     real(wp), intent(in) :: rows(:, :)                  !< (columns,rows) rows of the results
     type(motion_events_type), intent(in) :: events      !< those of the run
     type(string_type), intent(in) :: sentences(:)       !< about these events
@@ -187,6 +190,7 @@ contains
     said = ''
     call plot%open(text, heading, size(rows, 2), picture, '', err)
     if (allocated(err)) return
+    call plot%call_columns(heading%names, labels)
     call plot%write_rows(rows, err)
     call plot%mark(events, sentences)
     call plot%close(err)

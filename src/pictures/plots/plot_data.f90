@@ -12,6 +12,7 @@ module mech9_plot_data
 
   type :: plot_data_type
     type(string_type), allocatable :: names(:), units(:)   !< names and units of all columns of the results
+    type(string_type), allocatable :: labels(:)            !< names of these columns in the picture
     integer, allocatable :: columns(:)                     !< numbers of the columns that are kept, ascending
     real(wp), allocatable :: values(:, :)                  !< (columns kept,rows kept) values
     integer :: count = 0                                   !< number of rows kept
@@ -36,6 +37,7 @@ contains
     integer :: i
 
     data%names = names
+    data%labels = names
     data%units = units
     data%columns = pack([(i, i=1, size(names))], [(any(curves%x == i .or. curves%y == i), i=1, size(names))])
     data%stride = 1 + (max(expected, 1) - 1)/most_rows

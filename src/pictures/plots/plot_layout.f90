@@ -215,8 +215,8 @@ contains
     type(plot_data_type), intent(in) :: data  !< rows and columns that are plotted
     character(len=:), allocatable :: name
 
-    name = data%names(curve%y)%text
-    if (.not. over_time(curve)) name = data%names(curve%x)%text//':'//name
+    name = data%labels(curve%y)%text
+    if (.not. over_time(curve)) name = data%labels(curve%x)%text//':'//name
   end function curve_name
 
   !> The number of letters that the numbers of an axis take: their digits, and more for numbers like -3.5e-13 or -0.00035.

@@ -98,7 +98,7 @@ contains
     do i = 1, maxval(panels)
       own = pack(curves, panels == i)
       ! a dumb terminal cannot turn the label of the upward axis, so that it stands above the panel
-      text = text//'set title '//quoted(axis_label(own%y, data%names, data%units))//line_end// &
+      text = text//'set title '//quoted(axis_label(own%y, data%labels, data%units))//line_end// &
              terminal_axes(own, data)//curve_commands(own, data, data_block, &
                                                       with=trim(merge('points', 'lines ', data%are_points)))//line_end
     end do
@@ -163,7 +163,7 @@ contains
     true_shape = equal_scales(curves, data)
     ranges(:, 1) = data%extent(curves%x)
     ranges(:, 2) = data%extent(curves%y)
-    text = labels(curves, data)//'set ylabel '//upward_label(axis_label(curves%y, data%names, data%units), height)//line_end// &
+    text = labels(curves, data)//'set ylabel '//upward_label(axis_label(curves%y, data%labels, data%units), height)//line_end// &
            merge('set size ratio -1', 'set size noratio ', true_shape)//line_end
     if (true_shape) ranges = ranges_of(curves, data, width, height)
     text = text//axis_commands('x', ranges(:, 1), data%units(curves(1)%x)%text, width, true_shape .or. over_time(curves(1)))// &
@@ -176,7 +176,7 @@ contains
     type(plot_data_type), intent(in) :: data   !< rows and columns that are plotted
     character(len=:), allocatable :: text
 
-    text = 'set xlabel '//quoted(axis_label(curves%x, data%names, data%units))//line_end// &
+    text = 'set xlabel '//quoted(axis_label(curves%x, data%labels, data%units))//line_end// &
            'set format x '//axis_format(data%extent(curves%x))//line_end// &
            'set format y '//axis_format(data%extent(curves%y))//line_end
   end function labels

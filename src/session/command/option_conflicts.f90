@@ -254,8 +254,8 @@ contains
   pure subroutine judge_branch(given, err)
     character(len=*), intent(in) :: given(:)           !< names of the options that are given, without the dashes
     type(error_type), allocatable, intent(out) :: err  !< allocated if there are any
-    character(len=*), parameter :: allowed(*) = [character(len=8) :: 'branch', 'table', 'hdf5', 'plot', 'report', 'no-write', &
-                                                 'quiet', 'set']
+    character(len=*), parameter :: allowed(*) = [character(len=8) :: 'branch', 'table', 'hdf5', 'plot', 'names', 'report', &
+                                                 'no-write', 'quiet', 'set']
     integer :: i
 
     do i = 1, size(given)

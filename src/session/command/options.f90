@@ -65,7 +65,7 @@ module mech9_options
     option_type('plot', needed_argument, '[TARGET:]NAMES', any_text, .true., both, &
                 'plot columns: q3,P.x or P.x:P.y or section:q1:q2; TARGET: file or term'), &
     option_type('names', no_argument, '', any_text, .false., both, &
-                'call columns of the table and of plots by names of pairs: B.q'), &
+                'call columns of tables by names of pairs and links: B.q'), &
     option_type('sketch', needed_argument, 'FILE.svg', any_text, .false., both, &
                 'draw the mechanism at the start, or where it rests'), &
     option_type('animate', needed_argument, 'FILE', any_text, .true., both, &

@@ -7,7 +7,6 @@ module mech9_results
   use mech9_columns, only: columns_type
   use mech9_result_sink, only: result_sink_type, sink_slot_type, append_sink
   use mech9_heading, only: heading_type, heading_of
-  use mech9_part_names, only: number_columns
   use mech9_table, only: table_type
   use mech9_motion_event, only: motion_events_type
   use mech9_plot, only: plot_type, picture_of_plot
@@ -17,7 +16,7 @@ module mech9_results
   use mech9_fact_layout, only: put_diagnostics
   use mech9_xdmf, only: new_xdmf
   use mech9_command_line, only: command_line_type
-  use mech9_written_files, only: result_paths_type, find_result_paths
+  use mech9_written_files, only: result_paths_type, find_result_paths, list_plot_requests
   use mech9_structure_layout, only: write_structure
   use mech9_hdf5_record, only: write_provenance
   use mech9_version, only: name_and_version
@@ -88,22 +87,23 @@ contains
     type(string_type), allocatable :: requests(:)
     type(plot_type), allocatable :: plot
     character(len=:), allocatable :: picture
-    type(heading_type) :: heading
+    type(heading_type) :: heading, labels
     class(result_sink_type), allocatable :: sink
     integer :: i
 
     allocate (plots(0))
-    call options%arguments('plot', requests)
+    call list_plot_requests(options, model%mechanism%names, requests)
     heading = heading_of(model%mechanism%title, columns)
-    if (options%has('names')) call heading%call_by_names(model%mechanism%names)
+    labels = heading
+    call labels%call_by_names(model%mechanism%names)
+    if (options%has('names')) heading = labels
     do i = 1, size(requests)
       if (is_of_section(requests(i)%text)) cycle
       call picture_of_plot(requests(i)%text, self%table_path, options%file, i, picture)
       allocate (plot)
-      call number_columns(model%mechanism%names, requests(i)%text)
       call plot%open(requests(i)%text, heading_of(model%mechanism%title, columns), model%request%time%intervals + 1, picture, &
                      self%table_path, err)
-      if (.not. allocated(err)) call plot%call_columns(heading%names)
+      if (.not. allocated(err)) call plot%call_columns(heading%names, labels%names)
       if (allocated(err)) then
         if (leaves_out(model)) err%message = err%message//' (&output coordinates, derivatives or energies leave some out)'
         return

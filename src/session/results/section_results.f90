@@ -16,6 +16,7 @@ module mech9_section_results
   use mech9_section_layout, only: write_section
   use mech9_version, only: name_and_version
   use mech9_command_line, only: command_line_type
+  use mech9_written_files, only: list_plot_requests
   implicit none
   private
   public :: check_section_plots, write_section_files, write_section_results, print_section
@@ -32,7 +33,7 @@ contains
     type(plot_request_type) :: request
     integer :: i
 
-    call options%arguments('plot', requests)
+    call list_plot_requests(options, model%mechanism%names, requests)
     do i = 1, size(requests)
       if (.not. is_of_section(requests(i)%text)) cycle
       if (allocated(section)) then
@@ -66,21 +67,24 @@ contains
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
     type(error_type), allocatable :: of_plots
 
-    if (section%wanted%table /= '' .and. .not. options%has('no-write')) call write_table(model, section, err)
+    if (section%wanted%table /= '' .and. .not. options%has('no-write')) call write_table(options%has('names'), model, section, err)
     call draw_plots(options, model, section, table_path, of_plots)
     if (.not. allocated(err)) call move_alloc(of_plots, err)
   end subroutine write_section_files
 
   !> Write the table.
-  subroutine write_table(model, section, err)
+  subroutine write_table(by_names, model, section, err)
+    logical, intent(in) :: by_names                           !< columns are called by the names of pairs and links
     type(model_type), intent(in) :: model                     !< the model
     class(section_record_type), intent(in) :: section         !< the section
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
     type(error_type), allocatable :: at_close
     type(table_type) :: table
+    type(heading_type) :: heading
 
-    call table%open(section%wanted%table, new_heading(model%mechanism%title, texts_of(section%names), texts_of(section%units)), &
-                    name_and_version(model%program), err)
+    heading = new_heading(model%mechanism%title, texts_of(section%names), texts_of(section%units))
+    if (by_names) call heading%call_by_names(model%mechanism%names)
+    call table%open(section%wanted%table, heading, name_and_version(model%program), err)
     if (allocated(err)) return
     call table%write_rows(section%points(:, :section%count), err)
     call table%close(at_close)
@@ -96,24 +100,28 @@ contains
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
     type(string_type), allocatable :: requests(:)
     real(wp), allocatable :: points(:, :)
+    type(heading_type) :: heading, labels
     integer :: i
 
-    call options%arguments('plot', requests)
+    call list_plot_requests(options, model%mechanism%names, requests)
     do i = 1, size(requests)
       if (.not. is_of_section(requests(i)%text) .or. section%count == 0) cycle
       if (.not. allocated(points)) call take_points(section, points)
-      call draw_plot(requests(i)%text, i, options, &
-                     new_heading(model%mechanism%title, texts_of(section%names), texts_of(section%units)), table_path, points, err)
+      heading = new_heading(model%mechanism%title, texts_of(section%names), texts_of(section%units))
+      labels = heading
+      call labels%call_by_names(model%mechanism%names)
+      call draw_plot(requests(i)%text, i, options, heading, labels%names, table_path, points, err)
       if (allocated(err)) return
     end do
   end subroutine draw_plots
 
   !> Draw a plot.
-  subroutine draw_plot(request, number, options, heading, table_path, points, err)
+  subroutine draw_plot(request, number, options, heading, labels, table_path, points, err)
     character(len=*), intent(in) :: request                   !< argument of --plot
     integer, intent(in) :: number                             !< of this argument
     type(command_line_type), intent(in) :: options            !< the command line
     type(heading_type), intent(in) :: heading                 !< title and columns of the section
+    type(string_type), intent(in) :: labels(:)                !< names of the columns as the plot shows them
     character(len=*), intent(in) :: table_path                !< path of the table of the run; '-' or empty: no file
     real(wp), intent(in), contiguous :: points(:, :)          !< (columns,points)
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
@@ -122,6 +130,7 @@ contains
 
     call picture_of_plot(request, table_path, options%file, number, picture)
     call plot%open(request, heading, size(points, 2), picture, '', err)
+    if (.not. allocated(err)) call plot%call_columns(heading%names, labels)
     if (.not. allocated(err)) call plot%write_rows(points, err)
     if (.not. allocated(err)) call plot%close(err)
     if (allocated(err)) return

@@ -1,6 +1,7 @@
 !> All files that a run or an answer will write, with those made beside them: one list, known before any file is opened.
 module mech9_written_files
   use mech9_text, only: string_type
+  use mech9_part_names, only: part_names_type, number_columns
   use mech9_request, only: output_settings_type
   use mech9_long_term, only: section_type
   use mech9_replacement, only: path_of_part
@@ -14,7 +15,7 @@ module mech9_written_files
   use mech9_cam_files, only: cam_file_type, read_cam_file
   implicit none
   private
-  public :: result_paths_type, written_file_type, find_result_paths, list_written_files, standard_output_path
+  public :: result_paths_type, written_file_type, find_result_paths, list_written_files, standard_output_path, list_plot_requests
 
   !> The name that stands for standard output.
   character, parameter :: standard_output_path = '-'
@@ -143,6 +144,19 @@ contains
       if (picture /= standard_output_path) call append(files, 'the script of --plot', script_of_plot(picture))
     end do
   end subroutine list_plots
+
+  !> List the arguments of --plot, with numbers in place of the names of links and pairs.
+  pure subroutine list_plot_requests(options, names, requests)
+    type(command_line_type), intent(in) :: options                  !< the command line
+    type(part_names_type), intent(in) :: names                      !< of links and pairs
+    type(string_type), allocatable, intent(out) :: requests(:)      !< in the order in which they were given
+    integer :: i
+
+    call options%arguments('plot', requests)
+    do i = 1, size(requests)
+      call number_columns(names, requests(i)%text)
+    end do
+  end subroutine list_plot_requests
 
   !> Add the files that are written without a run.
   pure subroutine list_answers(options, files)
