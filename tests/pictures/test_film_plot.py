@@ -126,7 +126,7 @@ def test_units_and_names_of_the_file(checks, browser, build, tmp_path):
     checks.true(1000 < rows['q4'].max() < 1400, 'the slide is at more than a metre', rows['q4'].max())
     browser.resize(width=1300, height=900, still=True)
     browser.open(tmp_path / 'mm.html')
-    checks.equal(browser.value('document.getElementById("columns").value'), 'q4,B.x', 'the column of the pair')
+    checks.equal(browser.value('document.getElementById("columns").value'), 'slide.q,B.x', 'the column of the pair')
     words = browser.value('document.querySelector("#scale text").textContent').split()
     bar = browser.value('Number(document.querySelector("#scale path").getAttribute("d").match(/h([^v]+)v/)[1])')
     checks.equal(words[1], 'mm', 'the unit of the scale')
@@ -135,3 +135,19 @@ def test_units_and_names_of_the_file(checks, browser, build, tmp_path):
                                return [m.e, m.f]; }})()""") for name in ('q1', 'q2')]
     checks.near(np.hypot(*np.subtract(*places)) / bar * float(words[0]), 300, 2e-3, 'the radius of the crank by the scale')
     checks.equal(browser.errors, [], 'nothing on the console')
+
+
+def test_names_of_pairs(checks, browser, build, tmp_path):
+    """Columns have the names of pairs, in the plot and in the list of values; a request may have their numbers, too."""
+    data = tmp_path / 'named.nml'
+    data.write_text(text_of(example('slider_crank')).replace('&pair coordinate=1,', "&pair coordinate=1, name='shaft',", 1), encoding='utf-8')
+    done = run(build.program('mech9k'), data, '--quiet', '--table', tmp_path / 'film.dat', '--animate', tmp_path / 'film.html')
+    if not checks.equal(done.returncode, 0, done.stderr):
+        return
+    browser.resize(width=1300, height=900, still=True)
+    browser.open(tmp_path / 'film.html')
+    checks.true(browser.value('document.getElementById("columns").value').startswith('shaft.q,'), 'at first', None)
+    checks.true('shaft.dq' in browser.value('document.getElementById("list").textContent'), 'in the list', None)
+    for request in ('shaft.q:shaft.dq', 'q1:dq1'):
+        ask(browser, request)
+        checks.true({'shaft.q [rad]', 'shaft.dq [rad/s]'} & set(browser.value(TEXTS)), f'{request}: labels', browser.value(TEXTS))

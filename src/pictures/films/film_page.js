@@ -71,11 +71,11 @@ function decimalsOf(column) {
 function listValues() {
   const words = $("filter").value.toLowerCase().split(/[\s,]+/).filter(word => word);
   const wanted = film.names.map((name, column) => column).filter(column =>
-    !words.length || words.some(word => film.names[column].toLowerCase().includes(word)));
+    !words.length || words.some(word => (film.called[column] + " " + film.names[column]).toLowerCase().includes(word)));
   listed = wanted.slice(0, most).map(column => {
     const row = document.createElement("div"), [name, value, unit] = ["dt", "dd", "dd"].map(tag =>
       row.appendChild(document.createElement(tag)));
-    name.textContent = film.names[column];
+    name.textContent = film.called[column];
     unit.textContent = film.units[column];
     return {row, value, column, decimals: decimalsOf(column)};
   });
@@ -202,7 +202,8 @@ $("values").hidden = !film.names.length;
 $("values").open = innerWidth > 600;
 $("curves").hidden = !film.names.length || frames < 2;
 $("curves").open = innerWidth > 600;
-$("columns").value = film.plot || film.names.filter(name => /^q\d+$/.test(name)).slice(0, 3).join(",") || film.names[0] || "";
+$("columns").value = film.plot
+  || film.called.filter((_, column) => /^q\d+$/.test(film.names[column])).slice(0, 3).join(",") || film.called[0] || "";
 for (const name of columnNames) $("column-names").append(new Option(name));
 if (!$("curves").hidden) drawPlot();
 listValues();

@@ -1,6 +1,7 @@
 
 // The plot beside the film: columns over the time or over another column, with a mark at the frame that is shown.
-const columnNames = ["t", ...film.names], columnUnits = ["s", ...film.units];
+// Columns have the names of pairs and links where these have any; a request may also have their numbers.
+const columnNames = ["t", ...film.called], columnNumbers = ["t", ...film.names], columnUnits = ["s", ...film.units];
 const lineColours = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#808080"];
 const plotWidth = 380, plotSides = {left: 62, right: 14, top: 24, bottom: 42}, panelHeight = 120, mostHeight = 330;
 let plotMarks = [];
@@ -14,13 +15,13 @@ function curvesOf(text) {
   const skip = () => { while (text[at] == " ") at++; };
   const take = () => {
     skip();
-    let found = -1;
-    columnNames.forEach((name, i) => {
+    let found = -1, length = 0;
+    for (const names of [columnNames, columnNumbers]) names.forEach((name, i) => {
       if (!text.startsWith(name, at) || !" ,:".includes(text[at + name.length] ?? " ")) return;
-      if (found < 0 || name.length > columnNames[found].length) found = i;
+      if (name.length > length) [found, length] = [i, name.length];
     });
     if (found < 0) throw new Error("no column is named '" + text.slice(at).split(/[,:]/)[0].trim() + "'");
-    at += columnNames[found].length;
+    at += length;
     skip();
     return found;
   };

@@ -4,6 +4,7 @@ module mech9_html_film
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: string_type, to_text
+  use mech9_part_names, only: part_names_type, name_column
   use mech9_rotation, only: quaternion
   use mech9_film, only: film_type
   use mech9_film_clock, only: clock_decimals
@@ -27,11 +28,12 @@ module mech9_html_film
 contains
 
   !> Write the page to a file. Errors are exit_file.
-  subroutine save_html_film(path, title, scene, film, projection, planar, plot, err)
+  subroutine save_html_film(path, title, scene, film, names, projection, planar, plot, err)
     character(len=*), intent(in) :: path  !< name of the file
     character(len=*), intent(in) :: title !< title of the mechanism, any text
     type(scene_type), intent(in) :: scene !< nodes and items of the picture
     type(film_type), intent(in) :: film   !< poses and values at the outputs of the run
+    type(part_names_type), intent(in) :: names   !< of links and pairs
     type(projection_type), intent(in) :: projection !< from space to the page
     logical, intent(in) :: planar         !< the mechanism is seen along the normal of its plane, so that dragging moves it at first
     character(len=*), intent(in) :: plot  !< columns that are plotted at first, as for --plot; empty: some coordinates
@@ -61,16 +63,17 @@ contains
     call page%line('<input id="filter" type="search" placeholder="names, or parts of them: q1 P." aria-label="Names of columns"/>')
     call page%line('<dl id="list"></dl><p id="more"></p></details></div></main>')
     call page%line('<script>')
-    call put_film(scene, film, projection, planar, plot, page)
+    call put_film(scene, film, names, projection, planar, plot, page)
     call put_script(page)
     call page%line('</script></body></html>')
     call page%save(path, err)
   end subroutine save_html_film
 
   !> Append the data for the script as one constant.
-  subroutine put_film(scene, film, projection, planar, plot, page)
+  subroutine put_film(scene, film, names, projection, planar, plot, page)
     type(scene_type), intent(in) :: scene            !< nodes and items of the picture
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
+    type(part_names_type), intent(in) :: names       !< of links and pairs
     type(projection_type), intent(in) :: projection  !< from space to the page
     logical, intent(in) :: planar                    !< the mechanism is planar and seen along the normal of its plane
     character(len=*), intent(in) :: plot             !< columns that are plotted at first, as for --plot; empty: some coordinates
@@ -106,7 +109,7 @@ contains
     call put_items(scene, page)
     call put_frames(film, numbers, count, projection%centre, unit, page)
     call put_states(scene, page)
-    call put_values(film, page)
+    call put_values(film, names, page)
     ! names of columns hold no letter that has a meaning here
     if (scan(plot, '"<\') == 0) call page%line('plot: "'//plot//'",')
     call page%line('};')
@@ -242,13 +245,20 @@ contains
     end function letters
   end subroutine put_states
 
-  !> Append the names and units of the recorded columns, and their values in each frame.
-  subroutine put_values(film, page)
-    type(film_type), intent(in) :: film     !< poses and values at the outputs of the run
-    type(page_type), intent(inout) :: page  !< text to which the page is appended
+  !> Append the names and units of the recorded columns, by numbers and by the names of pairs and links, and their values in each frame.
+  subroutine put_values(film, names, page)
+    type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
+    type(part_names_type), intent(in) :: names       !< of links and pairs
+    type(page_type), intent(inout) :: page           !< text to which the page is appended
+    type(string_type), allocatable :: called(:)
     integer :: frame, i
 
     call put_words('names', film%names, page)
+    called = film%names
+    do i = 1, size(called)
+      call name_column(names, called(i)%text)
+    end do
+    call put_words('called', called, page)
     call put_words('units', film%units, page)
     call page%line('values: [')
     do frame = 1, film%n_frames

@@ -139,7 +139,7 @@ contains
     else if (page) then
       plot = ''
       if (allocated(self%plot)) plot = self%plot
-      call save_html_film(path, model%mechanism%title, scene, shown, projection, planar, plot, err)
+      call save_html_film(path, model%mechanism%title, scene, shown, model%mechanism%names, projection, planar, plot, err)
     else if (kind_of_picture(path) == 'gif') then
       call save_gif_film(path, model%mechanism%title, scene, shown, projection, err)
     else if (kind_of_picture(path) == 'mp4') then

@@ -3,7 +3,6 @@ module mech9_picture_requests
   use mech9_program_kind, only: dynamics
   use mech9_error, only: error_type, raise, add_place, exit_usage, exit_data
   use mech9_text, only: string_type
-  use mech9_part_names, only: number_columns
   use mech9_model, only: model_type
   use mech9_plot_request, only: plot_request_type, take_target
   use mech9_view, only: read_view
@@ -42,7 +41,6 @@ contains
     if (size(plots) > 0 .and. .not. options%has('optimize')) then
       call take_target(plots(1)%text, plot, at)
       requests%plot = plots(1)%text(at:)
-      call number_columns(model%mechanism%names, requests%plot)
     end if
     if (requests%sketch /= '' .and. kind_of_picture(requests%sketch) /= 'svg') then
       call raise(err, merge(exit_usage, exit_data, options%has('sketch')), "'"//requests%sketch// &
