@@ -219,6 +219,7 @@ HEAVY = FOUR_BAR + '&body link=3, mass=1, centre=0.6,0.1,0, inertia=0,0,0.1,0,0,
 EFFECTS = [
     ('&gravity acceleration=0,0,-9.81 /', 'gravity acts across the plane of the mechanism and moves nothing'),
     ('&gravity acceleration=0,-9.81,-1 /', None),
+    ('&gravity acceleration=0,-9810,0 /', 'gravity is 9810 m/s^2; that of the earth is 9.81 m/s^2'),
     ("&load kind='torque', link=3, torque=0,0,1 /\n&load kind='torque', link=3, torque=1,2,0 /", 'the torque of load 2 is about an axis in'),
     ("&load kind='torque', link=3, torque=1,2,0.1, frame='link' /", None),
     ("&load kind='force', link=3, force=0,0,-5 /", 'the force of load 1 acts across the plane of the mechanism and moves nothing'),

@@ -1,5 +1,5 @@
 !> Notes on data without effect, which are allowed but often mistakes: gravity, forces and torques that move nothing in the plane of a
-!> planar mechanism, lengths of very different size, and drives that stand still.
+!> planar mechanism, gravity in another unit, lengths of very different size, and drives that stand still.
 module mech9_effect_notes
   use mech9_named_words, only: with_names
   use mech9_kinds, only: wp
@@ -18,6 +18,8 @@ module mech9_effect_notes
 
   !> Directions that differ by less are one, and parts of a vector below this part of it are zero.
   real(wp), parameter :: round_off = 1.0e-9_wp
+  !> Gravity of the earth [m/s^2], the part of it that gravity elsewhere on it may differ, and its digits in other units.
+  real(wp), parameter :: on_earth = 9.81_wp, variation = 0.01_wp, mistaken(4) = [1.0e-3_wp, 1.0e3_wp, 0.0254_wp, 1.0_wp/0.0254_wp]
   !> Lengths whose ratio is larger were probably given in several units.
   real(wp), parameter :: large_ratio = 1000.0_wp
 
@@ -34,6 +36,7 @@ contains
     if (with_forces) then
       call find_plane(model%mechanism, normal, is_planar)
       if (is_planar) call print_across(unit, model%mechanism, normal)
+      call print_gravity(unit, model%mechanism)
     end if
     call print_lengths(unit, model%mechanism)
     call print_standing(unit, model)
@@ -93,6 +96,18 @@ contains
       end select
     end do
   end subroutine print_across
+
+  !> Note gravity with the digits of another unit of lengths, such as 9.81 mm/s^2.
+  subroutine print_gravity(unit, mechanism)
+    integer, intent(in) :: unit                     !< Fortran unit to write to
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    real(wp) :: size_in_file
+
+    if (.not. any(abs(norm2(mechanism%gravity)/(on_earth*mistaken) - 1.0_wp) < variation)) return
+    size_in_file = norm2(mechanism%gravity)/mechanism%units%length
+    write (unit, '(a)') 'note: gravity is '//to_text(size_in_file, 5)//' '//trim(mechanism%units%name_of('m/s^2'))// &
+      '; that of the earth is '//to_text(on_earth/mechanism%units%length, 4)//' '//trim(mechanism%units%name_of('m/s^2'))
+  end subroutine print_gravity
 
   !> Note distances of axes of very different size.
   subroutine print_lengths(unit, mechanism)
