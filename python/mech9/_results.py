@@ -197,6 +197,8 @@ class Results(Mapping[str, np.ndarray]):
         pair = next((i for i, given in enumerate(pairs, 1) if given and given in (part, f'{part}(1)')), 0)
         if part and part in pairs and end in COLUMNS_OF_COORDINATES:
             return f'{COLUMNS_OF_COORDINATES[end]}{pairs.index(part) + 1}'
+        if part and part in pairs and end in ('q.re', 'q.im'):   # of modes
+            return f'q{pairs.index(part) + 1}{end[1:]}'
         if pair and f'R{pair}.{end}' in self._columns:
             return f'R{pair}.{end}'
         if part and part in links and f'L{links.index(part) + 1}.{end}' in self._columns:

@@ -134,6 +134,12 @@ contains
     if (point < 2 .or. point == len(text)) return
     part = text(:point - 1)
     rest = text(point + 1:)
+    if (any(rest == ['q.re', 'q.im'])) then
+      ! a column of modes
+      number = coordinate_named(names, part)
+      if (number > 0) text = 'q'//to_text(number)//rest(2:)
+      return
+    end if
     do i = 1, size(ends)
       if (ends(i) /= rest) cycle
       number = coordinate_named(names, part)
