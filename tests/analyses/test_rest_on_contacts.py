@@ -77,6 +77,13 @@ def test_a_ball_in_a_bowl(checks, mech9d, tmp_path):
     bowl = circle(tmp_path, 0.5) + ", side='inside'"
     still = roots(mech9d, tmp_path, BALL + at(0.05, 0, -0.3, 0, 0, 0) + f"&contact point='C', radius=0.1, {bowl} /\n")
     checks.near(sorted(still.imag), [0]*4 + [sqrt(G/0.4)], 1e-9, 'a bowl at rest')
+    ask(mech9d, tmp_path, (tmp_path/'rest.nml').read_text(), '--modes', '--mode', '5', '--animate', 'film.html')
+    poses = re.search(r'poses: (\[.*?\]),?\s*\]', (tmp_path/'film.html').read_text(), re.S)[1]
+    places = np.array([[float(number) for number in row.strip('[], \n').split(',')[:21]] for row in poses.split('],')])
+    x, z, top = places[:, 14] - (places[:, 14].max() + places[:, 14].min())/2, places[:, 16], places[0, 2]
+    checks.near(np.hypot(x, z - top), [top - z.min()]*len(x), 1e-3, 'in a film, whose numbers are whole, the ball stays in the bowl',
+                scale=top - z.min())
+    checks.true(np.ptp(x) > 0.1*(top - z.min()), 'where it swings')
     cart = BALL.replace('cq=1,2,3,4,5,6', 'cq=1,2,3,4') + at(0.05, -0.3, 0, 0.02)
     cart = cart.replace("&pair coordinates=1,2,3,4,5,6, links=1,2, kind='free' /", """&pair coordinates=1,2,3, links=1,2, kind='planar', axis=0,-1,0, zero=1,0,0 /
 &pair coordinate=4, links=1,3, kind='prismatic', axis=1,0,0 /
@@ -155,6 +162,9 @@ def test_a_table(checks, mech9d, tmp_path, x, y):
     checks.near([rest['q3'][0], rest['stable'][0]], [0.7, 1], FINE, 'it stands')
     checks.near([rest[f'K{i}.fn'][0] for i in (1, 2, 3, 4)], [2*G/4*(1 + x*a/0.16 + y*b/0.09) for a, b in legs], 1e-8, 'forces of the legs')
     checks.equal(len(roots(mech9d, tmp_path, data)), 3, 'it slides and turns')
+    if x == 0:
+        all_rests, _ = ask(mech9d, tmp_path, data, '--equilibrium', '--starts', '3')
+        checks.near(abs(all_rests['q3']), [0.7]*4, FINE, 'from all random positions it falls, and stands on its legs or hangs on them')
 
 
 def test_positions_with_and_without_contact(checks, mech9d, tmp_path):
@@ -165,7 +175,9 @@ def test_positions_with_and_without_contact(checks, mech9d, tmp_path):
 &point name='P', link=2, position=0,0,-1 /
 &gravity acceleration=0,0,-9.81 /
 {at(0.5)}"""
-    free, _ = ask(mech9d, tmp_path, pendulum + "&contact point='P', origin=-0.1,0,0, normal=1,0,0 /\n", '--equilibrium')
+    beside = pendulum + "&contact point='P', origin=-0.1,0,0, normal=1,0,0 /\n"
+    free, _ = ask(mech9d, tmp_path, beside, '--equilibrium')
+    ask(mech9d, tmp_path, beside, '--modes', '--mode', '1', '--animate', 'free.html')
     checks.near([free['q1'][0], free['K1.fn'][0], free['K1.gap'][0]], [0, 0, 0.1], FINE, 'free')
     wall = pendulum + "&contact point='P', origin=0.3,0,0, normal=1,0,0 /\n"
     held, _ = ask(mech9d, tmp_path, wall, '--equilibrium')
@@ -179,6 +191,54 @@ def test_positions_with_and_without_contact(checks, mech9d, tmp_path):
     checks.near(three['stable'][order], [0, 1, 1], 0.0, 'which are stable')
     _, said = ask(mech9d, tmp_path, BALL + at(0, 0, 1, 0, 0, 0) + "&contact point='C', normal=0,0,-1, origin=0,0,2 /\n", '--equilibrium', code=5)
     checks.true('no position of equilibrium' in said, 'it falls')
+
+
+ARM = """&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,-1,0 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,-1,0, point=1,0,0, moving_point=0,0,0 /
+&body link=2, mass=2, centre=0.5,0,0, inertia=0.1,0.1,0.1,0,0,0 /
+&body link=3, mass=2, centre=0.5,0,0, inertia=0.1,0.1,0.1,0,0,0 /
+&gravity acceleration=0,0,-9.81 /
+&point name='T', link=3, position=1,0,0 /
+&load kind='coordinate', coordinate=2, stiffness=30, damping=0.5 /
+&contact point='T', origin=0,0,-0.5 /
+"""
+
+
+def reduced_arm(a):
+    """Of the arm whose tip is at z = -0.5, by the first angle: second angle, force along the first one without the motor, force of the
+    plane, and inertia, damping and stiffness along the plane."""
+    c = np.arcsin(-0.5 - sin(a))
+    c1 = -cos(a)/cos(c)
+    c2 = (sin(a) + sin(c)*c1**2)/cos(c)
+    b = c - a
+    velocity = np.array([-sin(a) - sin(c)*c1/2, cos(a) + cos(c)*c1/2])
+    inertia = 0.6 + 0.1*c1**2 + 2*velocity @ velocity
+    stiffness = -3*G*sin(a) - G*sin(c)*c1**2 + G*cos(c)*c2 + 30*(c1 - 1)**2 + 30*b*c2
+    return b, 3*G*cos(a) + G*cos(c)*c1 + 30*b*(c1 - 1), (G*cos(c) + 30*b)/cos(c), inertia, 0.5*(c1 - 1)**2, stiffness
+
+
+def test_an_arm_on_the_floor(checks, mech9d, tmp_path):
+    """Two links with a spring: the tip slides on the floor, and both angles move on curves. A controller holds the first one."""
+    angle = -0.4
+    for _ in range(30):
+        _, force, _, _, _, stiffness = reduced_arm(angle)
+        angle -= force/stiffness
+    second, _, press, inertia, damping, stiffness = reduced_arm(angle)
+    data = ARM + at(0.3, -1.0)
+    rest, _ = ask(mech9d, tmp_path, data, '--equilibrium')
+    checks.near([rest['q1'][0], rest['q2'][0], rest['K1.fn'][0]], [angle, second, press], FINE, 'rest')
+    expected = np.roots([inertia, damping, stiffness])
+    found = roots(mech9d, tmp_path, data)
+    checks.near([found[0].real, found[0].imag], [expected[0].real, abs(expected[0].imag)], FINE, 'the vibration', scale=abs(expected[0]))
+    _, torque, press, inertia, damping, stiffness = reduced_arm(-0.6)
+    data = ARM + at(0.3, 0.8) + "&motor coordinate=1, kind='pid', proportional=200, integral=100, derivative=10, setpoint=-0.6 /\n"
+    rest, _ = ask(mech9d, tmp_path, data, '--equilibrium')
+    checks.near([rest['M1.torque'][0], rest['K1.fn'][0]], [torque, press], FINE, 'beside a controller')
+    expected = np.roots([inertia, damping + 10, stiffness + 200, 100])
+    found = roots(mech9d, tmp_path, data)
+    checks.near([found[0].real, found[1].real, found[1].imag],
+                [expected[2].real, expected[0].real, abs(expected[0].imag)], FINE, 'roots with the integral', scale=abs(expected[0]))
 
 
 def test_what_is_told_and_refused(checks, mech9d, tmp_path):

@@ -7,6 +7,7 @@
 module mech9_contact_rest
   use mech9_kinds, only: wp
   use mech9_rotation, only: cross
+  use mech9_friction_cones, only: solve_least
   use mech9_error, only: error_type, exit_assembly, exit_interrupted
   use mech9_motion_view, only: link_motion_type
   use mech9_contact, only: contact_place_type
@@ -18,17 +19,18 @@ module mech9_contact_rest
   use mech9_state, only: state_type, copy_state
   use mech9_frame_motion, only: link_motion
   use mech9_motion_variation, only: vary_position
+  use mech9_linearisation, only: new_linearisation
   use mech9_posture, only: posture_type, new_posture
   use mech9_simulation, only: interruption_type
   use mech9_contact_motion, only: place_of_contact
-  use mech9_resting_mechanism, only: resting_type, put_to_rest, stand_at, find_stiffness
+  use mech9_resting_mechanism, only: resting_type, put_to_rest, stand_at, find_stiffness, try_step, copy_resting
   use mech9_same_position, only: is_same_position
   use mech9_linearised_equilibrium, only: equilibrium_type, linearise_in_place, let_follow, copy_equilibrium
   use mech9_equilibrium_search, only: raise_no_equilibrium
   use mech9_equilibria, only: find_equilibrium, find_equilibria
   implicit none
   private
-  public :: has_rigid_contacts, find_rest_on_contacts, find_all_on_contacts, bearing_contact
+  public :: has_rigid_contacts, find_rest_on_contacts, find_all_on_contacts, bearing_contact, close_gaps
 
   !> A mechanism whose rigid contacts press as springs with given forces.
   type :: pressed_type
@@ -49,6 +51,10 @@ module mech9_contact_rest
   real(wp), parameter :: closed_gap = 1.0e-14_wp, nearly_closed = 1.0e-11_wp
   !> Contacts with gaps below this part of the mechanism's length touch at the start.
   real(wp), parameter :: touching = 1.0e-3_wp
+  !> Gaps beside a position of rest are closed up to this part of the mechanism's length, for pictures.
+  real(wp), parameter :: closed_in_pictures = 1.0e-9_wp
+  !> Most steps by which they are closed.
+  integer, parameter :: most_steps = 10
   !> A contact bears where its force is above this part of all forces.
   real(wp), parameter :: bears = 1.0e-9_wp
   !> Rows of gaps below this part of the largest one depend on others.
@@ -140,7 +146,8 @@ contains
     allocate (pressed, list(0))
     call press(model, plan, assembled, pressed, err)
     if (allocated(err)) return
-    call find_equilibria(pressed%model, plan, assembled, n_starts, near, err, interruption)
+    ! open contacts have no forces that could become less
+    call find_equilibria(pressed%model, plan, assembled, n_starts, near, err, interruption, falls=.true.)
     if (allocated(err)) then
       if (err%code /= exit_interrupted) return
     end if
@@ -276,6 +283,7 @@ contains
     end do
     if (.not. allocated(err) .and. i > most_rounds) call raise_no_equilibrium(model%mechanism, found%resting, err)
     if (.not. allocated(err) .and. any(forces > bears*pressed%scale)) call rest_on(pressed, forces, found, err)
+    if (.not. allocated(err)) call return_to(model%mechanism, found%resting, err)
     ! the next search begins without forces again
     call set_springs(pressed, 0.0_wp*forces, pressed%stiffness, .false.)
     found%found = starts
@@ -326,6 +334,18 @@ contains
     end associate
   end subroutine rest_on
 
+  !> Return from the mechanism on springs to the one that was given, whose loads are fewer.
+  subroutine return_to(mechanism, resting, err)
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(resting_type), intent(inout) :: resting        !< at rest, with the forces of contacts
+    type(error_type), allocatable, intent(out) :: err   !< allocated if a load failed
+    type(state_type) :: state
+
+    call new_linearisation(mechanism, resting%plan, resting%linearisation)
+    call copy_state(resting%state, state)
+    call stand_at(mechanism, state, resting, err)
+  end subroutine return_to
+
   !> The derivatives of gaps by the free coordinates, in their units.
   subroutine find_rows(mechanism, numbers, resting, rows)
     type(mechanism_type), intent(in) :: mechanism        !< the mechanism
@@ -350,6 +370,42 @@ contains
       end do
     end associate
   end subroutine find_rows
+
+  !> Move the coordinates that follow so that the contacts that bear in a position of rest are closed in a position beside it, too.
+  !> `closed` is false where they cannot be.
+  subroutine close_gaps(mechanism, rest, beside, closed, err)
+    type(mechanism_type), intent(in) :: mechanism        !< the mechanism
+    type(resting_type), intent(in) :: rest               !< the position of rest, with the forces of contacts
+    type(resting_type), intent(inout) :: beside          !< the position beside it; the coordinates that follow change
+    logical, intent(out) :: closed                       !< the gaps are closed
+    type(error_type), allocatable, intent(out) :: err    !< allocated if a load failed
+    type(resting_type) :: aside, next
+    integer, allocatable :: numbers(:)
+    real(wp), allocatable :: rows(:, :), gaps(:), changes(:)
+    integer :: i
+    logical :: depends
+
+    closed = .true.
+    if (.not. (allocated(rest%following) .and. allocated(rest%state%contact_force))) return
+    associate (contacts => mechanism%contacts)
+      numbers = pack([(i, i=1, size(contacts))], contacts%is_rigid .and. any(abs(rest%state%contact_force) > 0.0_wp, dim=1))
+    end associate
+    allocate (changes(size(numbers)))
+    call copy_resting(beside, aside)
+    deallocate (aside%following, aside%follow)
+    aside%free = rest%following
+    do i = 1, most_steps
+      gaps = gaps_of(mechanism, numbers, aside%plan, aside%state)
+      closed = all(abs(gaps) <= closed_in_pictures*aside%plan%length)
+      if (closed) exit
+      call find_rows(mechanism, numbers, aside, rows)
+      call solve_least(matmul(rows, transpose(rows)), gaps, spread(1.0_wp, 1, size(gaps)), changes, depends)
+      call try_step(mechanism, aside, -matmul(changes, rows), next, closed, err)
+      if (allocated(err) .or. .not. closed) return
+      call copy_resting(next, aside)
+    end do
+    call copy_state(aside%state, beside%state)
+  end subroutine close_gaps
 
   !> A link whose velocities are the derivatives of its position by the last variation.
   function varied_link(resting, link) result(moved)

@@ -74,7 +74,7 @@ contains
   !> All equilibria to which an assembled position and random ones lead, sorted by their coordinates. The random positions are
   !> the same in every run. Fails as find_equilibrium does, but with exit_assembly and exit_singular only where none is found.
   !> Fails with exit_interrupted where it shall stop, with the equilibria that were found before.
-  subroutine find_equilibria(model, plan, assembled, n_starts, list, err, interruption)
+  subroutine find_equilibria(model, plan, assembled, n_starts, list, err, interruption, falls)
     type(model_type), intent(in) :: model                             !< the mechanism with the kinds of its coordinates
     type(plan_type), intent(in) :: plan                               !< its plan, in space
     type(state_type), intent(in) :: assembled                         !< closed, with the motion of the driven coordinates
@@ -82,6 +82,7 @@ contains
     type(equilibrium_type), allocatable, intent(out) :: list(:)       !< the equilibria
     type(error_type), allocatable, intent(out) :: err                 !< allocated if it failed
     class(interruption_type), intent(in), optional :: interruption    !< is asked before each start whether the search shall stop
+    logical, intent(in), optional :: falls  !< the mechanism falls from random positions where forces do not become less; not unless given
     type(equilibrium_type) :: found
     type(equilibrium_slot_type), allocatable :: slots(:)
     type(posture_type) :: posture
@@ -89,10 +90,12 @@ contains
     type(error_type), allocatable :: failure
     type(held_position_type) :: held
     integer :: i, n
-    logical :: reached
+    logical :: reached, may_fall
 
     allocate (list(0), slots(16))
     n = 0
+    may_fall = .false.
+    if (present(falls)) may_fall = falls
     associate (mechanism => model%mechanism, partition => model%problem%partition)
       posture = new_posture(mechanism, plan)
       call find_equilibrium(mechanism, partition, plan, assembled, found, failure)
@@ -108,7 +111,7 @@ contains
         ! setpoints may hold all coordinates, and there is one position then
         if (.not. any(held%partition%kind == free_coordinate)) exit
         if (present(interruption)) call stop_if_interrupted(interruption, i - 1, n_starts, err)
-        if (.not. allocated(err)) call try_anywhere(mechanism, partition, held, random, found, reached, err)
+        if (.not. allocated(err)) call try_anywhere(mechanism, partition, held, may_fall, random, found, reached, err)
         if (allocated(err)) exit
         if (reached) call add_new(mechanism, posture, found, slots, n)
       end do
@@ -135,20 +138,30 @@ contains
   end subroutine stop_if_interrupted
 
   !> The equilibrium to which one random position leads. `reached` is false where there is none.
-  subroutine try_anywhere(mechanism, partition, held, random, found, reached, err)
+  subroutine try_anywhere(mechanism, partition, held, may_fall, random, found, reached, err)
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
     type(partition_type), intent(in) :: partition       !< driven, free and dependent coordinates
     type(held_position_type), intent(in) :: held        !< the assembled position, with driven setpoints
+    logical, intent(in) :: may_fall                     !< the mechanism moves as forces pull where these do not become less
     type(random_type), intent(inout) :: random          !< source of random numbers
     type(equilibrium_type), intent(inout) :: found      !< the equilibrium
     logical, intent(out) :: reached                     !< there is one
     type(error_type), allocatable, intent(out) :: err   !< allocated if a load failed
-    type(resting_type) :: resting
+    type(resting_type) :: resting, start
     type(error_type), allocatable :: at_lock
 
     call start_anywhere(mechanism, held, random, resting, reached)
     if (.not. reached) return
+    if (may_fall) call copy_resting(resting, start)
     call find_any(mechanism, resting, reached, err)
+    if (may_fall .and. .not. (allocated(err) .or. reached)) then
+      call copy_resting(start, resting)
+      call find_from_start(mechanism, resting, at_lock)
+      reached = .not. allocated(at_lock)
+      if (.not. reached) then
+        if (at_lock%code /= exit_assembly) call move_alloc(at_lock, err)
+      end if
+    end if
     if (allocated(err) .or. .not. reached) return
     call reduce_turns(mechanism, held%state, resting)
     call copy_resting(resting, found%resting)

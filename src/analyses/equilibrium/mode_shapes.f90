@@ -7,6 +7,7 @@ module mech9_mode_shapes
   use mech9_motion_variation, only: vary_position
   use mech9_resting_mechanism, only: resting_type, try_step, move_along
   use mech9_linearised_equilibrium, only: equilibrium_type
+  use mech9_contact_rest, only: close_gaps
   implicit none
   private
   public :: shape_of_mode, energy_shares, displacement, position_in_vibration
@@ -78,6 +79,7 @@ contains
     type(resting_type) :: other
 
     call try_step(mechanism, equilibrium%resting, step, other, found, err)
+    if (found) call close_gaps(mechanism, equilibrium%resting, other, found, err)
     if (found) position = other%state
   end subroutine position_in_vibration
 end module mech9_mode_shapes
