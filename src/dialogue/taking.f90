@@ -87,7 +87,12 @@ contains
     words(2)%text = 'keep'
     do
       call conversation%listen('  convert or keep [keep]: ', words, line)
-      if (conversation%state /= going) return
+      if (conversation%state /= going) then
+        ! without an answer the numbers mean what they did
+        call take_back_units(before, conversation%interview%draft)
+        call conversation%keep()
+        return
+      end if
       line = lower(line(:min(len(line), 8)))
       if (line == '' .or. line == 'keep') then
         call conversation%say('The digits are kept: they are in '//new//' now.')

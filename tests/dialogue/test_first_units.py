@@ -126,3 +126,17 @@ def test_numbers_of_unknown_units(checks, mech9k, folder):
     done = piped(mech9k, '--edit', path, folder=folder, answers='mechanism length_unit = m\nconvert\nmechanism length_unit\n\n\nneither\n')
     said = in_one_line(done.stderr)
     checks.true('parameter 1 value. Nothing is converted, and the units are mm as before.' in said and 'length_unit [mm]' in said, 'refused', done.stderr)
+
+
+@pytest.mark.parametrize('answers', ('quit\n', ''), ids=('quit', 'end'))
+def test_left_without_an_answer(checks, mech9k, folder, answers):
+    """Whoever leaves at the question keeps the units that the numbers have."""
+    path = os.path.join(folder, 'press.nml')
+    with open(path, 'w', encoding='utf-8') as file:
+        file.write("""&mechanism title='press', length_unit='mm' / &structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 / &drive coordinate=1, kind='polynomial', coefficients=0, 1 /
+&point name='P', link=2, position=35,0,0 /
+""")
+    piped(mech9k, '--edit', path, folder=folder, answers='mechanism length_unit = m\n' + answers)
+    text = text_of(os.path.join(folder, 'press.draft.nml'))
+    checks.true("length_unit='mm'" in text and 'position=35' in text, 'the draft', text)
