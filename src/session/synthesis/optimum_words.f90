@@ -5,6 +5,7 @@ module mech9_optimum_words
   use mech9_counted, only: counted
   use mech9_error, only: error_type
   use mech9_explanation, only: explain
+  use mech9_objective, only: quantity_objective
   use mech9_state, only: state_type
   use mech9_diagnostics, only: diagnostics_type
   use mech9_model, only: model_type
@@ -51,6 +52,9 @@ contains
     if (size(synthesis%optima) == 0) return
     write (unit, '(a)') 'least value: '//to_text(synthesis%optima(1)%value, 8)//', from '// &
       counted(synthesis%optima(1)%starts, 'start')
+    if ((model%mechanism%units%length_name /= 'm' .or. model%mechanism%units%angle_name /= 'rad') .and. &
+        any(model%request%objectives%kind /= quantity_objective)) &
+      write (unit, '(a)') '  (distances from targets count in m, angles in rad, whatever the units of the file are)'
     do i = 1, size(synthesis%space%varied)
       associate (parameter => model%parameters(synthesis%space%varied(i)))
         write (unit, '(a)') '  '//parameter%name//' = '//to_text(synthesis%optima(1)%x(i), 12)//at_bound(i)
