@@ -317,7 +317,9 @@ contains
     type(error_type), allocatable :: err
     integer, allocatable :: coordinates(:)
     character(len=:), allocatable :: names(:), units(:), report
+    character(len=8) :: of_columns(3)
     real(wp), allocatable :: lower(:), upper(:), sizes(:)
+    integer :: i
 
     call begin_call(error)
     results = c_null_ptr
@@ -328,7 +330,13 @@ contains
     if (.not. allocated(err)) then
       allocate (found)
       call put_texts([character(len=10) :: 'coordinate', 'lower', 'upper'], found%names)
-      call put_texts(['1', '1', '1'], found%units)
+      ! turning and sliding coordinates have different units, which the report tells
+      of_columns = ['1       ', '        ', '        ']
+      do i = 1, size(coordinates)
+        if (i == 1) of_columns(2:) = units(coordinates(i))
+        if (units(coordinates(i)) /= of_columns(2)) of_columns(2:) = ''
+      end do
+      call put_texts(of_columns, found%units)
       call found%text%put(report)
       allocate (found%rows(3, size(coordinates)))
       found%rows(1, :) = coordinates

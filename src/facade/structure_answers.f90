@@ -119,6 +119,7 @@ contains
       call json%begin_object()
       call json%add('coordinate', coordinates(i))
       call json%add('name', trim(name_in(model%mechanism%names%coordinates, coordinates(i))))
+      call json%add('unit', trim(unit_name(model%mechanism, coordinates(i))))
       call put_limits_in_words(model, plan, coordinates(i), range, limits)
       call json%add('limited_by', limits)
       call json%end_object()

@@ -74,10 +74,13 @@ def test_answers_by_names(checks, mech9):
 &initial coordinate='A', position=0.4, velocity=0 /
 &gravity acceleration=0,-9.81,0 /
 &body link=3, mass=1, centre=0.5,0,0, inertia=0,0,0.1,0,0,0 /""").replace('value=0.3', 'value=0.9'))
+    modes = m.modes()
+    checks.true(np.array_equal(modes['D.q.re'], modes['q4.re']), 'a column of modes')
     for rows in (m.assemblies(), m.equilibrium()):
         checks.true(np.array_equal(rows['D.q'], rows['q4']), 'a column by the name of its pair')
     ranges = m.range()
     checks.equal(ranges.report['coordinate_names'], ['A', 'B', '', 'D'], 'names by numbers')
     told, = ranges.report['ranges']
-    checks.equal((told['coordinate'], told['name']), (1, 'A'), 'the coordinate by number and name')
+    checks.equal((told['coordinate'], told['name'], told['unit']), (1, 'A', ranges.units['lower']), 'the coordinate by number and name, and its unit')
+    checks.equal(ranges.units['upper'], m.assemblies().units['q1'], 'the unit of the file')
     checks.true('2 (B), 3, 4 (D)' in told['limited_by'], f'the limit by names: {told}')
