@@ -113,11 +113,17 @@ PATIENCE = 20
 
 def run(program, *arguments, folder=None, stdin='', timeout=120):
     """Run a program; gives its completed process with text in stdout and stderr. It may take `timeout` seconds of processor time."""
-    def limit():
-        resource.setrlimit(resource.RLIMIT_CPU, (timeout, resource.getrlimit(resource.RLIMIT_CPU)[1]))
-    return subprocess.run([os.fspath(program), *map(os.fspath, arguments)], cwd=folder, input=stdin,
-                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors='replace',
-                          timeout=PATIENCE * timeout, preexec_fn=limit)
+    words = [os.fspath(program), *map(os.fspath, arguments)]
+    # the limit is set from outside: a function in the new process would need a copy of this one, which takes longer than most programs
+    with subprocess.Popen(words, cwd=folder, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                          errors='replace') as process:
+        resource.prlimit(process.pid, resource.RLIMIT_CPU, (timeout, resource.getrlimit(resource.RLIMIT_CPU)[1]))
+        try:
+            said, errors = process.communicate(stdin, timeout=PATIENCE * timeout)
+        except BaseException:
+            process.kill()
+            raise
+    return subprocess.CompletedProcess(words, process.returncode, said, errors)
 
 
 def text_of(path):
