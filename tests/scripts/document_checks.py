@@ -17,7 +17,8 @@ BLOCK = re.compile(r'^(?P<not_run><!-- not run: [^\n]* -->\n)?'
                    r'(?P<indent> *)```(?P<kind>\w*)\n(?P<text>.*?)^ *```$', re.M | re.S)
 LINK = re.compile(r'\[[^\]]*\]\((?!https?:)([^)#\s]*)(#[^)\s]*)?\)')
 PLACE = re.compile(r'`((?:src|tests|user_procs|cmake|examples|docs|bench)/[\w/.-]+)`(?:: ((?:`\w+`(?:, )?)+))?')
-COPIED = ('cmake', 'docs', 'examples', 'src', 'tests', 'user_procs')
+# no command needs the sources of programs and tests, most of the files
+COPIED = ('cmake', 'docs', 'examples', 'user_procs')
 
 
 def blocks_of(text):
