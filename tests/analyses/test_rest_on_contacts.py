@@ -241,6 +241,55 @@ def test_an_arm_on_the_floor(checks, mech9d, tmp_path):
                 [expected[2].real, expected[0].real, abs(expected[0].imag)], FINE, 'roots with the integral', scale=abs(expected[0]))
 
 
+CRADLE = """&structure cq=1,2,3,4 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,-1,0, point=-0.05,0,0, moving_point=0,0,0 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=1,0,0, point=0,0,0, moving_point=0,0,0 /
+&pair coordinate=3, links=1,4, kind='revolute', axis=0,-1,0, point=0.05,0,0, moving_point=0,0,0 /
+&pair coordinate=4, links=4,5, kind='revolute', axis=1,0,0, point=0,0,0, moving_point=0,0,0 /
+&body link=3, mass=1, centre=0,0,-0.5 /
+&body link=5, mass=2, centre=0,0,-0.7 /
+&gravity acceleration=0,0,-9.81 /
+&point name='A', link=3, position=0,0,-0.5 /
+&contact point='A', radius=0.12, kind='sphere', link=5, origin=0,0,-0.7, other_radius=0.15 /
+"""
+
+
+def slopes(f, x, h):
+    """Derivatives of a function by the numbers of x, differences of sixth order."""
+    return np.array([sum(w*(f(x + i*h*e) - f(x - i*h*e)) for i, w in ((1, 45), (2, -9), (3, 1)))/(60*h) for e in np.eye(len(x))])
+
+
+def test_balls_that_lean_on_each_other(checks, mech9d, tmp_path):
+    """Two pendulums in space, against a formulation with a multiplier: stationary V - f g, and its second derivatives along the contact."""
+    def places(q):
+        return np.array([[x + length*sin(a)*cos(b), length*sin(b), -length*cos(a)*cos(b)]
+                         for x, length, a, b in ((-0.05, 0.5, q[0], q[1]), (0.05, 0.7, q[2], q[3]))])
+
+    def energy(q):
+        return G*(places(q)[0, 2] + 2*places(q)[1, 2])
+
+    def gap(q):
+        return np.linalg.norm(np.subtract(*places(q))) - 0.27
+
+    def pulled(q, force):
+        return slopes(lambda p: energy(p) - force*gap(p), q, 1e-3)
+
+    q, force = np.array([-0.1, 0, 0.05, 0]), 1.0
+    for _ in range(8):
+        row = slopes(gap, q, 1e-3)
+        stiffness = slopes(lambda p: pulled(p, force), q, 1e-2)
+        step = np.linalg.solve(np.block([[stiffness, -row[:, None]], [row[None], np.zeros((1, 1))]]), [*pulled(q, force), gap(q)])
+        q, force = q - step[:4], force - step[4]
+    row, velocity = slopes(gap, q, 1e-3), slopes(places, q, 1e-3)
+    inertia = np.einsum('ikx,k,jkx->ij', velocity, [1, 2], velocity)
+    along = np.linalg.svd(row[None])[2][1:].T
+    squares = np.linalg.eigvals(np.linalg.solve(along.T @ inertia @ along, along.T @ slopes(lambda p: pulled(p, force), q, 1e-2) @ along))
+    data = CRADLE + at(-0.4, 0, 0.3, 0)
+    rest, _ = ask(mech9d, tmp_path, data, '--equilibrium')
+    checks.near([rest['q1'][0], rest['q3'][0], rest['K1.fn'][0]], [q[0], q[2], force], 1e-9, 'angles and force')
+    checks.near(sorted(roots(mech9d, tmp_path, data).imag), np.sqrt(sorted(squares.real)), 1e-7, 'vibrations; differences twice')
+
+
 def test_what_is_told_and_refused(checks, mech9d, tmp_path):
     """Friction counts as zero, and this is said; a drive that moves beside a closed contact is refused."""
     rub = BALL + at(0, 0, 1, 0, 0, 0) + "&contact point='C', radius=0.1, friction=0.2 /\n"
