@@ -7,7 +7,8 @@ module mech9_dynamic_report
   use mech9_number_lists, only: same_numbers
   use mech9_row_layout, only: write_coefficients, take_changes, write_events
   use mech9_hdf5_sink, only: hdf5_sink_type
-  use mech9_named_words, only: with_names
+  use mech9_part_names, only: part_names_type
+  use mech9_named_words, only: with_names, named_list
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_check_notes, only: print_run_notes
@@ -70,7 +71,8 @@ contains
       to_text(simulation%conditioning%least, 3)//' at t = '//to_text(simulation%conditioning%t, 6)//' s'
     do i = 1, size(simulation%coordinate_changes)
       write (unit, '(a)') 't = '//to_text(simulation%coordinate_changes(i)%t, 8)//' s: '// &
-        with_names(simulation%model%mechanism%names, change_words(simulation%coordinate_changes, i))
+        with_names(simulation%model%mechanism%names, &
+                   change_words(simulation%coordinate_changes, simulation%model%mechanism%names, i))
     end do
     call print_events(unit, with_impulses_in_units(simulation%events, simulation%model%mechanism), &
                       simulation%model%mechanism)
@@ -106,8 +108,9 @@ contains
   end subroutine print_events
 
   !> A change of coordinates in words.
-  pure function change_words(events, i) result(words)
+  pure function change_words(events, names, i) result(words)
     type(coordinate_change_type), intent(in) :: events(:)   !< all changes, in the order of time
+    type(part_names_type), intent(in) :: names              !< of links and pairs
     integer, intent(in) :: i                                !< number of the one that is meant
     character(len=:), allocatable :: words
     integer, allocatable :: before(:)
@@ -120,7 +123,8 @@ contains
     else if (size(before) > 0) then
       words = 'coordinates '//to_text(before)//' are integrated themselves again'
     end if
-    if (same_numbers(before, events(i)%replaced)) words = 'independent coordinates are now '//to_text(events(i)%independent)
+    if (same_numbers(before, events(i)%replaced)) words = 'independent coordinates are now '// &
+      named_list(names%coordinates, events(i)%independent, size(events(i)%independent))
   end function change_words
 
   !> Print the coefficients of motion a(p,r) at the start, p and r the numbers of the independent coordinates.

@@ -4,6 +4,7 @@ module mech9_periodic_task
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: to_text
+  use mech9_part_names, only: add_names
   use mech9_counted, only: counted
   use mech9_command_line, only: command_line_type
   use mech9_diagnostics, only: diagnostics_type
@@ -98,6 +99,7 @@ contains
       if (motion%turns(k) == 0) cycle
       words = 'coordinate '//to_text(k)//' turns by '//counted(abs(motion%turns(k)), 'whole turn')//' in a period'
       if (motion%turns(k) < 0) words = words//', backwards'
+      call add_names(mechanism%names, words)
       write (unit, '(a)') words
     end do
     write (unit, '(a)') 'multipliers '//multiplier_words(motion)

@@ -4,6 +4,7 @@ told with their place.
 Compares the program with itself: names with numbers.
 """
 import os
+import re
 
 import numpy as np
 import pytest
@@ -157,12 +158,17 @@ def test_one_wrong_name_is_one_error(checks, mech9k, tmp_path):
     checks.equal(done.returncode, DONE, done.stderr)
 
 
-def test_values_of_coordinates_have_names(checks, mech9k, tmp_path):
+def test_values_of_coordinates_have_names(checks, mech9k, mech9d, tmp_path):
     """The crank of a double rocker comes to a dead point: the message tells the value of the coordinate with its name."""
     text = named(TEXT + DRIVE).replace('&cam', '!&cam').replace('&output', '!&output')
     text = text.replace('point=0.9,0,0', 'point=1.9,0,0').replace('point=0.3,0,0', 'point=0.6,0,0')
     done = run(mech9k, write(tmp_path, text), '--table', os.devnull, '--set', 'time.end=2')
     checks.true(done.returncode == 6 and ' at q1 (A) = ' in done.stderr, 'the dead point is told', done.stderr)
+    # without a drive, other independent coordinates take over there
+    free = named(TEXT + START).replace('&output', '!&output').replace('&stop', '!&stop').replace('&friction', '!&friction')
+    free = free.replace('point=0.9,0,0', 'point=1.9,0,0').replace('point=0.3,0,0', 'point=0.6,0,0')
+    done = run(mech9d, write(tmp_path, free, 'free.nml'), '--table', os.devnull, '--set', 'time.end=2')
+    checks.true(done.returncode == DONE and re.search(r'independent coordinates are now \d \([ABCD]\)', done.stderr), 'changes of coordinates', done.stderr)
 
 
 SWING = """&mechanism title='swing' /
