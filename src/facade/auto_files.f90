@@ -195,7 +195,7 @@ contains
     if (.not. allocated(err)) call find_law_period(model, laws, err)
     if (allocated(err)) return
     associate (motion => found%motions(1))
-      call refuse_turns(motion%turns, start, err)
+      call refuse_turns(motion%turns /= 0 .or. abs(motion%advance) > 0.0_wp, start, err)
       if (.not. allocated(err)) call refuse_family(motion, 'AUTO follows', start%request, err)
       if (.not. allocated(err)) call map%begin(model, err)
       if (allocated(err)) return
@@ -222,14 +222,14 @@ contains
     start%states(:n, :) = states
   end subroutine find_periodic_start
 
-  !> Fail where a motion makes whole turns.
+  !> Fail where a motion makes turns.
   subroutine refuse_turns(turns, start, err)
-    integer, intent(in) :: turns(:)                        !< (M) of coordinates in a period
+    logical, intent(in) :: turns(:)                        !< (M) the coordinate does not come back in a period
     type(start_type), intent(in) :: start                  !< with the request
     type(error_type), allocatable, intent(out) :: err      !< allocated where it is refused
 
-    if (all(turns == 0)) return
-    call raise(err, exit_data, 'coordinate '//to_text(findloc(turns /= 0, .true., dim=1))//' makes whole turns in a period, '// &
+    if (.not. any(turns)) return
+    call raise(err, exit_data, 'coordinate '//to_text(findloc(turns, .true., dim=1))//' makes turns in a period, '// &
                'and AUTO knows no motions that come back but for turns; --branch does', start%request%place)
   end subroutine refuse_turns
 

@@ -13,7 +13,8 @@ module mech9_recorded_run
   use mech9_facts, only: facts_type
   use mech9_json, only: json_type
   use mech9_run, only: run_type
-  use mech9_periodic, only: periodic_found_type, find_periodic, take_periodic, start_periodic
+  use mech9_periodic, only: periodic_found_type, find_periodic
+  use mech9_periodic_run, only: take_periodic, start_periodic
   use mech9_run_outcome, only: run_outcome_type
   use mech9_run_facts, only: list_run_facts
   use mech9_whole_report, only: compose_report

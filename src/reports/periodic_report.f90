@@ -67,6 +67,7 @@ contains
     call json%end_array()
     associate (units => [(unit_of(mechanism, k), k=1, size(motion%q))], &
                rates => [(rate_unit_of(mechanism, k), k=1, size(motion%q))])
+      if (motion%cyclic > 0) call json%add('advance', motion%advance/units)
       call json%add('start', motion%q/units)
       call json%add('start_rates', motion%dq/rates)
       call json%add('residual', motion%residual/units)

@@ -13,8 +13,9 @@ module mech9_periodic_task
   use mech9_result_units, only: unit_of, unit_name
   use mech9_kept_rows, only: kept_rows_type
   use mech9_picture_requests, only: picture_requests_type, read_picture_requests
-  use mech9_periodic_motion, only: periodic_motion_type, stable, unstable, lost_at_plus_one, lost_at_minus_one
-  use mech9_periodic, only: periodic_found_type, find_periodic, take_periodic, start_periodic
+  use mech9_periodic_motion, only: periodic_motion_type, belongs_to_family, stable, unstable, lost_at_plus_one, lost_at_minus_one
+  use mech9_periodic, only: periodic_found_type, find_periodic
+  use mech9_periodic_run, only: take_periodic, start_periodic
   use mech9_run, only: run_type
   use mech9_dynamic_report, only: dynamic_report_type
   use mech9_run_task, only: carry_out
@@ -102,6 +103,11 @@ contains
       call add_names(mechanism%names, words)
       write (unit, '(a)') words
     end do
+    do k = 1, size(motion%advance)
+      if (abs(motion%advance(k)) > 0.0_wp) &
+        write (unit, '(a)') 'coordinate '//to_text(k)//' goes on by '//to_text(motion%advance(k)/unit_of(mechanism, k), 10)//' '// &
+          trim(unit_name(mechanism, k))//' in a period; no force depends on it'
+    end do
     write (unit, '(a)') 'multipliers '//multiplier_words(motion)
     write (unit, '(a)') stability_words(motion)
     words = 'product of the multipliers '//to_text(motion%product, 6)
@@ -148,7 +154,8 @@ contains
     end if
     if (motion%is_free .and. .not. motion%is_trivial) then
       words = words//'; one multiplier is 1, along the motion'
-      if (motion%at_one > 1) words = words//', and further ones belong to a family of motions'
+      if (motion%cyclic > 0) words = words//', and '//to_text(motion%cyclic)//' by what goes on'
+      if (belongs_to_family(motion)) words = words//', and further ones belong to a family of motions'
     end if
   end function stability_words
 end module mech9_periodic_task

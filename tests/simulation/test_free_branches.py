@@ -262,3 +262,106 @@ SPRING = """&structure cq=1 /
 def test_refusals(checks, mech9d, tmp_path, text, words):
     _, _, said = follow(mech9d, tmp_path, text, 'period' if "'period'" in text else 'k', 3)
     checks.true(words in said, words, said)
+
+
+# the governor of examples/governor: its shaft turns on, and no force depends on its angle
+GOVERNOR = """&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,-1,0 /
+&initial coordinate=1, position=0.2, velocity=6.118 /
+&initial coordinate=2, position=2.1262 /
+&body link=2, mass=1, inertia=0,0,4,0,0,0 /
+&body link=3, mass=1, centre=0,0,-1 /
+&gravity acceleration=0,0,-9.81 /
+&load kind='coordinate', coordinate=1, force=1, law='polynomial', over='q2', coefficients=9.42477796076938,-9 /
+&load kind='coordinate', coordinate=2, damping=0.3 /
+&periodic period=1.44 /
+&time end=10, intervals=10 /
+&parameter name='b', sets='load(2).damping', low=0.28, high=0.5 /
+&branch parameter='b', of='periodic' /
+"""
+STEADY = GOVERNOR.replace('velocity=6.118', 'velocity=4.5').replace('position=2.1262', 'position=1.05')
+# b (J + m l^2 sin^2 + 4 m l^2 cos^2) w sin = 2 m l^2 k cos, Vyshnegradskii
+CRITICAL = 9/((4.75 + 1)*np.sqrt(2*9.81)*np.sqrt(0.75))
+
+
+def hunting(steps):
+    """The limit cycle by shooting with the method of Runge and Kutta: the start where the arm is highest, the speed there, period, angle of the
+    shaft, and the multipliers of arm and speed but for 1."""
+    def rates(s):
+        q, v, w, _ = s
+        sine, cosine = np.sin(q), np.cos(q)
+        return np.array([v, w**2*sine*cosine - 9.81*sine - 0.3*v, (-9*(q - np.pi/3) - 2*sine*cosine*w*v)/(4 + sine**2), w])
+
+    def go(start, period):
+        s, h = np.append(start, 0.0), period/steps
+        for _ in range(steps):
+            a = rates(s)
+            b = rates(s + h/2*a)
+            c = rates(s + h/2*b)
+            s = s + h/6*(a + 2*b + 2*c + rates(s + h*c))
+        return s
+
+    def slopes(start, period):
+        return np.column_stack([(go(start + e, period) - go(start - e, period))[:3]/2e-5 for e in 1e-5*np.eye(3)])
+
+    start, period = np.array([2.126, 0.0, 6.118]), 1.4433
+    for _ in range(6):
+        end = go(start, period)
+        system = np.zeros((4, 4))
+        system[:3, :3], system[:3, 3], system[3, 1] = slopes(start, period) - np.eye(3), rates(end)[:3], 1
+        change = np.linalg.solve(system, np.append(start - end[:3], -start[1]))
+        start, period = start + change[:3], period + change[3]
+    values = np.linalg.eigvals(slopes(start, period))
+    pair = max(np.delete(values, np.argmin(np.abs(values - 1))), key=lambda value: value.imag)
+    return np.array([start[0], start[2], period, go(start, period)[3], pair.real, pair.imag])
+
+
+def test_hunting(checks, mech9d, tmp_path):
+    """The limit cycle of the governor comes back but for the angle of its shaft; its branch ends where steady running becomes stable."""
+    rows, branches, said = follow(mech9d, tmp_path, GOVERNOR, 'b')
+    coarse, fine = hunting(200), hunting(400)
+    exact = fine + (fine - coarse)/15
+    at = np.argmin(np.abs(rows['b'] - 0.3))
+    # differences of the reference over 1e-5
+    checks.near([rows['q2'][at], rows['period'][at]], exact[[0, 2]], 1e-8, 'the motion at b = 0.3', scale=1)
+    checks.near(rows['growth'][at], np.log(np.hypot(exact[4], exact[5]))/exact[2], 5e-7, 'its growth', scale=1)
+    checks.equal(branches[0]['ends'], ['low', 'Hopf point'], 'ends')
+    last = branches[0]['special_points'][-1]
+    checks.near([last['value'], last['q'][1]], [CRITICAL, np.pi/3], 1e-9, 'the Hopf point', scale=1)
+    # at the criterion the cubic equation of small deviations has a pair without real part
+    speed, inertia = np.sqrt(2*9.81), 4.75
+    a = np.array([[0, 1, 0], [-speed**2*0.75, -CRITICAL, speed*np.sqrt(0.75)], [-9/inertia, -speed*np.sqrt(0.75)/inertia, 0]])
+    roots = np.linalg.eigvals(a)
+    checks.near(last['period'], 2*np.pi/np.abs(roots.imag).max(), 1e-9, 'the period there')
+    checks.near(roots.real[np.abs(roots.imag) > 1], 0, 1e-12, 'the reference', scale=1)
+
+    path, report = tmp_path/'follow.nml', tmp_path/'motion.json'
+    done = run(mech9d, path, '--periodic', '--report', report, '--no-write')
+    found = json.loads(report.read_text())['periodic']
+    checks.near([found['period'], abs(found['advance'][0])], exact[2:4], 1e-7, 'one period', scale=1)
+    checks.near(sorted(np.abs([complex(*pair) for pair in found['multipliers']])), sorted([1, 1, *2*[np.hypot(exact[4], exact[5])]]), 1e-6,
+                'multipliers', scale=1)
+    checks.equal([found['stability'], found['turns'], found['advance'][1]], ['stable', [0, 0], 0], 'what is told')
+    checks.true('coordinate 1 goes on by' in done.stderr, 'the words', done.stderr)
+
+
+def test_steady_running(checks, mech9d, tmp_path):
+    """Steady running is followed by whole turns of the shaft, and its point of change is a Hopf point."""
+    rows, branches, _ = follow(mech9d, tmp_path, STEADY, 'b')
+    checks.near([rows['q2'].min(), rows['q2'].max()], np.pi/3, 1e-12, 'the arm')
+    checks.near(rows['period'], 2*np.pi/np.sqrt(2*9.81), 1e-12, 'a turn of the shaft')
+    checks.equal([point['kind'] for point in branches[0]['special_points']], ['Hopf point'], 'one special point')
+    checks.near(branches[0]['special_points'][0]['value'], CRITICAL, 1e-10, 'the criterion')
+
+
+@pytest.mark.parametrize('before, after', (
+    ('acceleration=0,0,-9.81', 'acceleration=0.01,0,-9.81'),
+    ('&periodic', "&load kind='coordinate', coordinate=2, force=1e-6, law='harmonic', over='q1', amplitude=1, angular_frequency=1 /\n&periodic"),
+), ids=('gravity', 'law'))
+def test_an_angle_that_matters(checks, mech9d, tmp_path, before, after):
+    """A shaft whose angle some force depends on has to come back but for whole turns."""
+    path = tmp_path/'motion.nml'
+    path.write_text(GOVERNOR.replace(before, after), encoding='utf-8')
+    done = run(mech9d, path, '--periodic', '--no-write')
+    checks.true('goes on by' not in done.stderr and done.returncode in (0, 5), 'no motion that goes on', done.stderr)

@@ -23,7 +23,7 @@ module mech9_branches
   use mech9_curve_branches, only: find_curve_branches => find_branches
   use mech9_single_parameter, only: single_parameter_type, new_single_parameter
   use mech9_position_curve, only: position_curve_type, new_position_curve, begin_curve
-  use mech9_periodic_motion, only: periodic_motion_type
+  use mech9_periodic_motion, only: periodic_motion_type, belongs_to_family
   use mech9_periodic, only: periodic_found_type, find_periodic
   use mech9_law_periods, only: law_period_type, find_law_period
   use mech9_periodic_curve, only: periodic_curve_type, begin_periodic_curve
@@ -340,7 +340,7 @@ contains
     if (motion%is_trivial) then
       call raise(err, exit_data, 'the start leads to a position of rest; take of=''equilibrium'', whose Hopf points are ends '// &
                  'of branches of periodic motions, or begin nearer to a motion', request%place)
-    else if (motion%at_one > 1) then
+    else if (belongs_to_family(motion)) then
       call raise(err, exit_data, 'the motion conserves energy or something else, so that it belongs to a family at each value '// &
                  'of the parameter; '//follows//' single motions: add some damping and what feeds the motion', request%place)
     end if

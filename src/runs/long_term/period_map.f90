@@ -5,6 +5,8 @@
 !> monodromy matrix of a periodic motion, come from the variational equations, which are integrated with the motion; events on the way
 !> change them as the simulation does. Changes of independent coordinates do not matter: both ends are shown in the free coordinates.
 !> Parameters of the model may follow, by which the state at the end has derivatives, too.
+!>
+!> Cyclic coordinates may be left out of the comparison of both ends: they keep their start, and go on by any amount.
 module mech9_period_map
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -21,6 +23,7 @@ module mech9_period_map
   use mech9_simulation, only: interruption_type
   use mech9_free_simulation, only: free_simulation_type
   use mech9_model_motion, only: model_motion_type
+  use mech9_cyclic_coordinates, only: find_cyclic
   use mech9_directed_motion, only: set_directions, set_unit_directions
   use mech9_orbit_divergence, only: orbit_divergence_type
   implicit none
@@ -55,6 +58,8 @@ module mech9_period_map
     real(wp), allocatable :: unit_of(:)           !< (states) unit of each coordinate and rate; 1 of motors [rad, m, per s]
     real(wp), allocatable :: unit_of_coordinate(:)   !< (M) unit of each coordinate [rad, m]
     real(wp), allocatable :: period_of(:)         !< (M) change of a coordinate that leads to the same position; 0: none [rad, m]
+    logical, allocatable :: may_go_on(:)          !< (free) the coordinate is cyclic
+    logical, allocatable :: goes_on(:)            !< (free) it is, and both ends are not compared in it; set by the user of the map
     type(state_type) :: start                     !< the closed position at the start of the last evaluation
     real(wp), allocatable :: at_start(:)          !< (states) the state there
     real(wp), allocatable :: rate_at_start(:)     !< (states) its derivative in time
@@ -82,6 +87,7 @@ module mech9_period_map
     procedure :: residual_of_coordinates
     procedure :: difference
     procedure :: jacobian
+    procedure :: advance
     procedure :: state_of
     procedure :: motor_states
     procedure :: close => close_map
@@ -97,6 +103,7 @@ contains
     class(interruption_type), intent(in), optional :: interruption   !< is asked whether motions shall stop
     class(variable_model_type), intent(inout), optional, target :: variable   !< the model by its parameters, where their derivatives
                                                                      !< are wanted; outlives the map
+    logical, allocatable :: is_cyclic(:)
     integer :: i
 
     call self%close()
@@ -110,6 +117,9 @@ contains
     if (allocated(err)) return
     associate (plan => self%motion%plan)
       self%free = plan%free
+      call find_cyclic(given, is_cyclic)
+      self%may_go_on = is_cyclic(plan%free)
+      self%goes_on = self%may_go_on .and. .false.
       self%has_chains = size(plan%closures) > 0
       self%states = 2*size(plan%free) + size(self%motors)
       allocate (self%unit_of(self%states), source=1.0_wp)
@@ -357,6 +367,9 @@ contains
       end do
       self%monodromy = rows(:, :self%states)
       self%by_parameters = rows(:, self%states + 1:)
+      do i = 1, n
+        if (self%goes_on(i)) self%by_parameters(i, :) = 0.0_wp
+      end do
       self%q_at_end = state%q
       self%dq_at_end = state%dq
       self%at_end = self%state_of(state%q, state%dq, self%motor_states(state))
@@ -379,6 +392,7 @@ contains
     n = size(self%free)
     r = self%at_end - self%at_start
     r(:n) = r(:n) - self%turns(self%free)*self%period_of(self%free)
+    where (self%goes_on) r(:n) = 0.0_wp
   end function residual
 
   !> The difference of a state from another one, but for whole turns.
@@ -393,6 +407,7 @@ contains
     do i = 1, size(self%free)
       period = self%period_of(self%free(i))
       if (period > 0.0_wp) r(i) = r(i) - period*anint(r(i)/period)
+      if (self%goes_on(i)) r(i) = 0.0_wp
     end do
   end function difference
 
@@ -402,7 +417,20 @@ contains
     real(wp) :: r(size(self%start%q))            !< (M) of coordinates [rad, m]
 
     r = self%q_at_end - self%start%q - self%turns*self%period_of
+    r(pack(self%free, self%goes_on)) = 0.0_wp
   end function residual_of_coordinates
+
+  !> The ways by which cyclic coordinates go on that are not compared; zero for all others.
+  pure function advance(self) result(ways)
+    class(period_map_type), intent(in) :: self   !< the map, evaluated
+    real(wp) :: ways(size(self%start%q))         !< (M) [rad, m]
+    integer :: i
+
+    ways = 0.0_wp
+    do i = 1, size(self%free)
+      if (self%goes_on(i)) ways(self%free(i)) = self%q_at_end(self%free(i)) - self%start%q(self%free(i))
+    end do
+  end function advance
 
   !> The derivatives of the residual by the state at the start and by the period.
   pure subroutine jacobian(self, by_state, by_period)
@@ -416,6 +444,13 @@ contains
       by_state(i, i) = by_state(i, i) - 1.0_wp
     end do
     by_period = self%rate_at_end
+    ! a coordinate that goes on keeps its start
+    do i = 1, size(self%free)
+      if (.not. self%goes_on(i)) cycle
+      by_state(i, :) = 0.0_wp
+      by_state(i, i) = 1.0_wp
+      by_period(i) = 0.0_wp
+    end do
   end subroutine jacobian
 
   !> Free the memory of the map.

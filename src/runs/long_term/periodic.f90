@@ -10,19 +10,18 @@ module mech9_periodic
   use mech9_counted, only: counted
   use mech9_random, only: random_type
   use mech9_result_units, only: unit_of, unit_name, rate_unit_of, rate_unit_name
-  use mech9_motor_states, only: start_motors, find_limits
   use mech9_model, only: model_type
   use mech9_directed_motion, only: explain_refusal
   use mech9_state, only: state_type, copy_state
   use mech9_simulation, only: interruption_type
-  use mech9_model_motion, only: model_motion_type
   use mech9_law_periods, only: law_period_type, find_law_period, fit_period
   use mech9_period_map, only: period_map_type
-  use mech9_periodic_motion, only: periodic_motion_type, find_multipliers, judge_stability, same_motion, unstable
+  use mech9_periodic_motion, only: periodic_motion_type, find_multipliers, judge_stability, same_motion, unstable, &
+    belongs_to_family
   use mech9_periodic_newton, only: newton_type
   implicit none
   private
-  public :: periodic_found_type, find_periodic, take_periodic, start_periodic
+  public :: periodic_found_type, find_periodic
 
   !> Periods that the motion goes on for, where Newton's method finds nothing: one after the other.
   integer, parameter :: transients(*) = [0, 10, 40, 150]
@@ -42,8 +41,6 @@ module mech9_periodic
   !> A free motion comes back between these parts of the guess of its period, if at all; so many positions are looked at.
   real(wp), parameter :: nearest_return = 0.6_wp, farthest_return = 1.6_wp
   integer, parameter :: samples = 400
-  !> The least tolerance of a run over a motion from which its neighbours part.
-  real(wp), parameter :: least_tolerance = 1.0e-13_wp
   real(wp), parameter :: turn = 8.0_wp*atan(1.0_wp)
 
   !> The motions, that from the start of the data file first where it leads to one.
@@ -254,8 +251,37 @@ contains
     end if
   end subroutine search
 
-  !> Search from a state alone.
+  !> Search from a state alone: first for a motion that comes back but for cyclic coordinates, where there are some, then for one that comes
+  !> back but for whole turns. One of a family, or one that is hardly apart from a steady motion, counts only where there is no other.
   subroutine search_near(map, laws, x, period, evaluations, motion, err)
+    type(period_map_type), intent(inout) :: map          !< the map
+    type(law_period_type), intent(in) :: laws            !< the laws of time
+    real(wp), intent(in) :: x(:)                         !< (states) the state
+    real(wp), intent(in) :: period                       !< or its guess [s]
+    integer, intent(inout) :: evaluations                !< counts them
+    type(periodic_motion_type), intent(out) :: motion    !< the motion that was found
+    type(error_type), allocatable, intent(out) :: err    !< allocated if nothing was found
+    type(periodic_motion_type) :: relative
+    real(wp) :: start(size(x))
+    logical :: found
+
+    found = .false.
+    start = x
+    if (.not. laws%follows_time .and. any(map%may_go_on)) then
+      call search_relative(map, laws, start, period, evaluations, relative, found, err)
+      if (allocated(err)) return
+      if (found) motion = relative
+      if (found .and. .not. belongs_to_family(relative)) return
+    end if
+    call search_whole(map, laws, start, period, evaluations, motion, err)
+    if (.not. found .or. .not. allocated(err)) return
+    if (err%code == exit_interrupted) return
+    deallocate (err)
+    motion = relative
+  end subroutine search_near
+
+  !> Search for a motion that comes back but for whole turns.
+  subroutine search_whole(map, laws, x, period, evaluations, motion, err)
     type(period_map_type), intent(inout) :: map          !< the map
     type(law_period_type), intent(in) :: laws            !< the laws of time
     real(wp), intent(in) :: x(:)                         !< (states) the state
@@ -279,7 +305,46 @@ contains
     else
       call describe_failure(map, newton, err)
     end if
-  end subroutine search_near
+  end subroutine search_whole
+
+  !> Search for a free motion that comes back but for cyclic coordinates. A steady motion, in which these alone change, is none: its start
+  !> is a better one for a search with whole turns.
+  subroutine search_relative(map, laws, x, period, evaluations, motion, found, err)
+    type(period_map_type), intent(inout) :: map          !< the map
+    type(law_period_type), intent(in) :: laws            !< the laws of time
+    real(wp), intent(inout) :: x(:)                      !< (states) the state; that of a steady motion where the search led to one
+    real(wp), intent(in) :: period                       !< guess of the period [s]
+    integer, intent(inout) :: evaluations                !< counts them
+    type(periodic_motion_type), intent(inout) :: motion  !< the motion, where one was found
+    logical, intent(out) :: found                        !< one was found
+    type(error_type), allocatable, intent(out) :: err    !< allocated if the motion was interrupted
+    type(newton_type) :: newton
+    real(wp) :: guess, along(size(x))
+    integer :: n
+
+    found = .false.
+    map%goes_on = map%may_go_on
+    guess = period
+    call find_return(map, x, period, guess, err)
+    if (.not. allocated(err)) then
+      call newton%begin(map, x, guess, .true.)
+      call newton%find(map, err)
+      evaluations = evaluations + newton%evaluations
+      newton%evaluations = evaluations
+    end if
+    if (newton%converged .and. .not. allocated(err)) then
+      n = size(map%free)
+      along = map%rate_at_start*newton%period/newton%scale
+      where (map%goes_on) along(:n) = 0.0_wp
+      found = any(abs(along) > sqrt(newton%tolerance)*turn)
+      if (found) call take_motion(map, laws, newton, motion, err)
+      if (.not. found) x = newton%x
+    end if
+    map%goes_on = .false.
+    if (.not. allocated(err)) return
+    found = .false.
+    if (err%code /= exit_interrupted) deallocate (err)
+  end subroutine search_relative
 
   !> Find a better guess of the period of a free motion: the time near the guess at which the motion passes its start most closely.
   subroutine find_return(map, x, guess, period, err)
@@ -387,6 +452,7 @@ contains
       motion%is_trivial = motion%is_trivial .or. &
                           all(abs(motion%multipliers - 1.0_wp) > sqrt(newton%tolerance*motion%growth))
     if (motion%is_trivial) motion%repeats_after = 0.0_wp
+    motion%cyclic = count(map%goes_on)
     call judge_stability(newton%tolerance*motion%growth, motion)
     motion%product = real(product(motion%multipliers), wp)
     motion%knows_volume = map%volume_is_known
@@ -395,6 +461,8 @@ contains
     motion%dq = map%dq_at_start
     motion%motor = map%motor_states(map%start)
     motion%turns = map%turns
+    motion%advance = map%advance()
+    where (abs(motion%advance) > 0.0_wp) motion%turns = 0
     motion%residual = map%residual_of_coordinates()
     motion%rate_residual = map%dq_at_end - map%dq_at_start
     motion%signature = map%means
@@ -465,14 +533,14 @@ contains
     call map%evaluate(newton%x, newton%period, err)
     if (allocated(err)) return
     turns = map%turns
-    if (all(turns == 0) .and. laws%is_known) return
+    if (all(turns == 0) .and. laws%is_known .and. .not. any(map%goes_on)) return
     n = size(map%free)
     x = newton%x
-    x(:n) = x(:n) + turns(map%free)*map%period_of(map%free)
+    x(:n) = x(:n) + merge(map%at_end(:n) - x(:n), turns(map%free)*map%period_of(map%free), map%goes_on)
     call map%evaluate(x, newton%period, err, from=map%from + newton%period)
     if (allocated(err)) return
     deviation = newton%size_of_residual(map)
-    differs = any(map%turns(map%free) /= turns(map%free)) .or. &
+    differs = any(map%turns(map%free) /= turns(map%free) .and. .not. map%goes_on) .or. &
               deviation > of_check*newton%tolerance*newton%size_of_matrix
     if (.not. differs) return
     if (.not. laws%is_known) then
@@ -511,36 +579,4 @@ contains
                to_text(k)//' does not: the mechanism is in another assembly there; no periodic motion was found', &
                map%model%request%periodic%place)
   end subroutine check_branch
-
-  !> Let a model record one period of a motion: its times, and the values at its start.
-  subroutine take_periodic(motion, model)
-    type(periodic_motion_type), intent(in) :: motion    !< the motion
-    type(model_type), intent(inout) :: model            !< gets them
-
-    model%request%time%end = model%request%time%start + motion%period
-    ! errors of steps grow within the period
-    associate (solver => model%request%solver)
-      solver%relative_tolerance = min(solver%relative_tolerance, max(least_tolerance, solver%relative_tolerance/motion%growth))
-      solver%absolute_tolerance = min(solver%absolute_tolerance, max(least_tolerance, solver%absolute_tolerance/motion%growth))
-    end associate
-    associate (initial => model%problem%initial)
-      initial%position = motion%q
-      initial%velocity = motion%dq
-      initial%position_given = .true.
-      initial%velocity_given = .true.
-    end associate
-  end subroutine take_periodic
-
-  !> Let an assembled run begin with the states that motors have in the motion.
-  subroutine start_periodic(motion, model, run, err)
-    type(periodic_motion_type), intent(in) :: motion    !< the motion
-    type(model_type), intent(in) :: model               !< of the run
-    type(model_motion_type), intent(inout) :: run       !< assembled with its values, not yet prepared
-    type(error_type), allocatable, intent(out) :: err   !< allocated if the law of a motor has no value
-
-    if (size(motion%motor) == 0) return
-    call start_motors(model%mechanism, run%start)
-    run%start%motor = motion%motor
-    call find_limits(model%mechanism, run%start, err)
-  end subroutine start_periodic
 end module mech9_periodic

@@ -34,6 +34,7 @@ module mech9_periodic_curve
     real(wp) :: range = 1.0_wp                                   !< of the parameter, in the units of the data file
     integer :: multiple = 1                                      !< periods of the laws in one of the motion
     logical :: is_free = .false.                                 !< the period belongs to the motion
+    logical :: goes_on = .false.                                 !< cyclic coordinates do not come back
     integer :: states = 0                                        !< numbers of a state
     type(phase_plane_type), allocatable :: planes(:)             !< of the starts of free motions, by the number of the equations
     real(wp) :: period_of_motion = 0.0_wp                        !< at the last point [s]
@@ -60,6 +61,8 @@ module mech9_periodic_curve
   !> A free motion has shrunk to a position of rest where its start crosses the plane at a rate below this, in units of the state over the
   !> angle of the period. Motions as small as this are lost in errors of steps.
   real(wp), parameter :: at_rest = 1.0e-6_wp
+  !> Rates below this, in the same units, are errors of a steady motion.
+  real(wp), parameter :: steady = 1.0e-9_wp
   !> A free motion whose period shrinks to this part of the first one is none.
   real(wp), parameter :: least_period = 0.02_wp
   !> The search for a Hopf point moves the parameter by this part of its range first. It has ended at a move of the second one, or at one of
@@ -89,9 +92,11 @@ contains
     curve%variable => variable
     curve%range = range
     curve%is_free = motion%is_free
+    curve%goes_on = motion%cyclic > 0
     call find_law_period(model, laws, err)
     if (.not. allocated(err)) call curve%map%begin(model, err)
     if (allocated(err)) return
+    if (curve%goes_on) curve%map%goes_on = curve%map%may_go_on
     curve%period_of_motion = motion%period
     if (laws%is_known .and. .not. curve%is_free) curve%multiple = max(1, nint(motion%period/laws%period))
     associate (map => curve%map)
@@ -107,7 +112,7 @@ contains
       curve%period(:coordinates) = map%period_of/map%unit_of_coordinate
       state = map%state_of(motion%q, motion%dq, motion%motor)
       allocate (curve%planes(1))
-      if (curve%is_free) call choose_plane(map, state, motion%period, motion%turns(map%free), &
+      if (curve%is_free) call choose_plane(map, state, motion%period, motion%turns(map%free) + merge(1, 0, map%goes_on), &
                                            curve%unit([map%free, (i, i=coordinates + 1, curve%m - 2)]), curve%planes(1), start, err)
       if (allocated(err)) return
       if (curve%is_free) state = start
@@ -204,7 +209,8 @@ contains
     end associate
   end subroutine take_plane
 
-  !> The rates of the state at the start of a motion, in units of the curve over the angle of the period.
+  !> The rates of the state at the start of a motion, in units of the curve over the angle of the period, without those of cyclic coordinates
+  !> that do not come back.
   function flow(self)
     class(periodic_curve_type), intent(in) :: self        !< the curve, evaluated
     real(wp) :: flow(self%states)
@@ -216,6 +222,7 @@ contains
       flow(n + 1:) = self%map%rate_at_start(n + 1:)/self%unit(coordinates + 1:coordinates + self%states - n)
     end associate
     flow = flow*(self%period_of_motion/turn)
+    where (self%map%goes_on) flow(:n) = 0.0_wp
   end function flow
 
   !> Begin the map at a value of the parameter, and find the period where it is that of laws.
@@ -246,6 +253,7 @@ contains
     else
       call self%map%begin(model, err, variable=self%variable)
     end if
+    if (self%goes_on .and. .not. allocated(err)) self%map%goes_on = self%map%may_go_on
   end subroutine begin_map
 
   !> Find the period of the motion, and its derivative by the parameter.
@@ -430,7 +438,8 @@ contains
     type(curve_point_type), intent(in) :: point           !< on the curve
     type(verdict_type), intent(out) :: verdict            !< stability
     complex(wp), allocatable :: multipliers(:)
-    real(wp), allocatable :: matrix(:, :)
+    real(wp), allocatable :: matrix(:, :), rates(:)
+    integer, allocatable :: kept(:)
     type(error_type), allocatable :: err
     integer :: i
 
@@ -443,7 +452,11 @@ contains
       do i = 1, self%states
         matrix(:, i) = matrix(:, i)*(self%unit(point%place(i))/self%unit(point%place(:self%states)))
       end do
-      call split_off(flow(self), matrix)
+      ! the multiplier 1 of a cyclic coordinate belongs to its own direction
+      kept = pack([(i, i=1, self%states)], [.not. self%map%goes_on, (.true., i=size(self%map%free) + 1, self%states)])
+      rates = flow(self)
+      matrix = matrix(kept, kept)
+      call split_off(rates(kept), matrix)
     end if
     call find_multipliers(matrix, multipliers)
     do i = 1, size(multipliers)
@@ -474,17 +487,24 @@ contains
     matrix = matrix(2:, 2:)
   end subroutine split_off
 
-  !> The kind of a point at which a pair of roots crosses the imaginary axis: one whose multipliers are -1 doubles the period.
+  !> The kind of a point at which a pair of roots crosses the imaginary axis: one whose multipliers are -1 doubles the period. Of a steady
+  !> motion, in which cyclic coordinates alone change, it is a Hopf point.
   integer function kind_of_crossing(self, point) result(kind)
     class(periodic_curve_type), intent(inout) :: self     !< the curve
     type(curve_point_type), intent(in) :: point           !< on the curve
     type(verdict_type) :: verdict
+    real(wp) :: rates(self%states)
     integer :: i
 
     call self%judge(point, verdict)
     i = minloc(abs(real(verdict%roots, wp)), dim=1, mask=abs(aimag(verdict%roots)) > 0.0_wp)
     kind = torus
-    if (i == 0) return
+    rates = flow(self)
+    if (self%is_free .and. any(self%map%may_go_on)) then
+      where (self%map%may_go_on) rates(:size(self%map%free)) = 0.0_wp
+      if (all(abs(rates) <= steady)) kind = hopf
+    end if
+    if (i == 0 .or. kind == hopf) return
     if (abs(aimag(verdict%roots(i))*self%period_of_motion - 0.5_wp*turn) < half_turn) kind = period_doubling
   end function kind_of_crossing
 

@@ -4,7 +4,7 @@ module mech9_periodic_motion
   use mech9_lapack, only: dgeev
   implicit none
   private
-  public :: periodic_motion_type, find_multipliers, judge_stability, same_motion
+  public :: periodic_motion_type, find_multipliers, judge_stability, same_motion, belongs_to_family
   public :: stable, unstable, neutral, lost_at_plus_one, lost_at_minus_one, lost_by_pair
 
   !> Stability: all multipliers lie within the unit circle, one lies outside, or none does and some lie on it within errors.
@@ -30,6 +30,8 @@ module mech9_periodic_motion
     real(wp), allocatable :: q(:)                !< (M) coordinates at the start [rad, m]
     real(wp), allocatable :: dq(:)               !< (M) their rates [rad/s, m/s]
     real(wp), allocatable :: motor(:)            !< (motors) their states
+    integer :: cyclic = 0                        !< coordinates that do not come back, since the equations do not contain them
+    real(wp), allocatable :: advance(:)          !< (M) ways of these in a period; 0: of others [rad]
     integer, allocatable :: turns(:)             !< (M) whole periods of coordinates by which both ends differ
     real(wp), allocatable :: residual(:)         !< (M) what coordinates differ by at both ends, but for turns [rad, m]
     real(wp), allocatable :: rate_residual(:)    !< (M) what their rates differ by [rad/s, m/s]
@@ -69,26 +71,28 @@ contains
     end do
   end subroutine find_multipliers
 
-  !> Judge the stability by the multipliers. One of a free motion is 1, along the motion; further ones near 1, as of motions that conserve
-  !> something, are known by the square root of the error.
+  !> Judge the stability by the multipliers. One of a free motion is 1, along the motion, and one for each coordinate that the equations do
+  !> not contain; further ones near 1, as of motions that conserve something, are known by the square root of the error.
   pure subroutine judge_stability(error, motion)
     real(wp), intent(in) :: error                          !< relative error of the multipliers
     type(periodic_motion_type), intent(inout) :: motion    !< with its multipliers; gets the judgement
     logical :: judged(size(motion%multipliers))
     real(wp) :: size_of(size(motion%multipliers)), largest
-    integer :: k
+    integer :: k, i
 
     size_of = abs(motion%multipliers)
     judged = .true.
     motion%at_one = count(abs(motion%multipliers - 1.0_wp) <= sqrt(error))
     if (motion%is_free .and. .not. motion%is_trivial) then
-      judged(minloc(abs(motion%multipliers - 1.0_wp), dim=1)) = .false.
+      do i = 0, motion%cyclic
+        judged(minloc(abs(motion%multipliers - 1.0_wp), dim=1, mask=judged)) = .false.
+      end do
       ! a double one is split by errors
-      if (motion%at_one > 1) judged = judged .and. abs(motion%multipliers - 1.0_wp) > sqrt(error)
+      if (belongs_to_family(motion)) judged = judged .and. abs(motion%multipliers - 1.0_wp) > sqrt(error)
     end if
     motion%lost = 0
     motion%stability = stable
-    if (motion%is_free .and. motion%at_one > 1 .and. .not. motion%is_trivial) motion%stability = neutral
+    if (motion%is_free .and. belongs_to_family(motion) .and. .not. motion%is_trivial) motion%stability = neutral
     if (.not. any(judged)) return
     k = maxloc(size_of, dim=1, mask=judged)
     largest = size_of(k)
@@ -103,6 +107,13 @@ contains
       motion%stability = neutral
     end if
   end subroutine judge_stability
+
+  !> Whether a free motion has more multipliers 1 than for its own way and for coordinates that do not come back.
+  pure logical function belongs_to_family(motion)
+    type(periodic_motion_type), intent(in) :: motion       !< with its multipliers
+
+    belongs_to_family = motion%at_one > 1 + motion%cyclic
+  end function belongs_to_family
 
   !> Whether two motions are one, perhaps from another point of it.
   pure logical function same_motion(a, b)

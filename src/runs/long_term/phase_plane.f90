@@ -23,6 +23,8 @@ module mech9_phase_plane
   integer, parameter :: samples = 400
   !> A start nearer to an extreme, in parts of the period, is there.
   real(wp), parameter :: same_time = 1.0e-9_wp
+  !> Coordinates that move by less, in units of the curve, stand still.
+  real(wp), parameter :: least_move = 1.0e-6_wp
   !> Least sine of the angle between the motion and a plane.
   real(wp), parameter :: least_angle = 0.1_wp
 
@@ -53,7 +55,7 @@ contains
     do k = 1, n
       if (turns(k) == 0) moves(k) = (maxval(states(k, :)) - minval(states(k, :)))/unit(k)
     end do
-    if (any(moves > 0.0_wp)) then
+    if (any(moves > least_move)) then
       k = maxloc(moves, dim=1)
       call find_extreme(states(k, :), states(n + k, :), period, time)
       if (time > same_time*period .and. time < (1.0_wp - same_time)*period) then
