@@ -9,8 +9,8 @@ import warnings
 import numpy as np
 import pytest
 
+from force_pages import ROUNDED, Arrows
 from mech9_cases import TREE, table_of, tolerance_of
-from svg_pictures import SVG, picture_of
 
 WEIGHT = ("&structure cq=1 / &pair coordinate=1, links=1,2, kind='prismatic', axis=0,0,-1 / &body link=2, mass=2 / "
           "&gravity acceleration=0,0,-9.81 / &load kind='user' / &initial coordinate=1, position=0, velocity=0 / "
@@ -403,6 +403,10 @@ def test_arrow_of_a_stop(checks, mech9, turns):
         c, s = (math.cos(q/3), math.sin(q/3)) if turns else (1, 0)
         origin = about + [0, 0 if turns else q/3, 0]
         return [origin, origin + [c, s, 0], origin + [-s, c, 0]]
-    titles = [one.findtext(SVG + 'title') for one in picture_of(m.animate(dynamics=True).text).iter(SVG + 'g') if one.get('class') == 'touching']
-    size = 2*9.81*(0.4*math.cos(0.1) if turns else 1)
-    checks.equal(titles, [f"stop 1: {'torque' if turns else 'force'} in pair 1, at most {size:.4g} {'N m' if turns else 'N'}"], 'the arrow')
+    arrows = Arrows(m.animate(dynamics=True).text)
+    true = np.array([0, 0, 2*9.81*0.4*math.cos(0.1)] if turns else [0, 2*9.81, 0])
+    titles = [title for title in arrows.ways if title.startswith('stop')]
+    checks.equal(titles, [f"stop 1: {'torque' if turns else 'force'} in pair 1"], 'one arrow')
+    largest = max(size for name, size in arrows.told.items() if arrows.is_torque(name) == turns)
+    checks.true(np.abs(arrows.ways[titles[0]] - true).max() < ROUNDED*largest, 'its direction and size', [arrows.ways[titles[0]][0], true])
+    checks.near(arrows.told[titles[0]], np.linalg.norm(true), 1e-3, 'its size is told')
