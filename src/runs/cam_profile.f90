@@ -81,11 +81,12 @@ contains
     real(wp), intent(in) :: times(:)                                     !< from the start on, in order [s]
     type(cam_contact_type), allocatable, intent(out) :: contacts(:)      !< one for each time
     type(error_type), allocatable, intent(out) :: err                    !< allocated if it failed
-    type(driven_simulation_type), target :: simulation
+    class(driven_simulation_type), allocatable, target :: simulation
     type(plan_type), pointer :: present_plan
     type(state_type), pointer :: state
     integer :: i
 
+    allocate (simulation)
     call new_driven_simulation(model, plan, start, simulation, pictures=.true.)
     allocate (contacts(size(times)))
     do i = 1, size(times)

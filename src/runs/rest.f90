@@ -220,12 +220,13 @@ contains
     type(end_type), intent(in) :: ends(:)              !< the ends
     type(equilibrium_type), intent(out) :: found       !< the equilibrium, with the forces of the stops
     logical, intent(out) :: serves                     !< it was found
-    type(rest_type) :: rest
-    type(model_type) :: held
+    class(rest_type), allocatable :: rest
+    class(model_type), allocatable :: held
     type(error_type), allocatable :: err
     integer :: exchange
 
     serves = .false.
+    allocate (rest, held)
     do exchange = 1, count(model%problem%partition%kind == free_coordinate)
       call hold_ends(model, ends, exchange, held, serves)
       if (.not. serves) return

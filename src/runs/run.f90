@@ -38,13 +38,14 @@ contains
     class(variable_model_type), intent(inout), optional, target :: variable   !< the model as a function of its parameters, where
                                                                               !< derivatives are requested; it must outlive the run
     logical, intent(in), optional :: pictures                                 !< the motion of all links is requested
+    class(row_source_type), allocatable :: former
     logical :: all_links
 
     all_links = model%request%output%with_derivatives() .and. .not. model%is_driven()
     if (present(pictures)) all_links = all_links .or. pictures
     call self%motion%prepare(model, err, all_links)
     if (allocated(err)) return
-    if (allocated(self%source)) deallocate (self%source)
+    if (allocated(self%source)) call move_alloc(self%source, former)
     allocate (self%source)
     call new_row_source(self%motion%simulation, self%source)
     if (model%request%output%with_derivatives()) call self%source%add_sensitivities(variable, err)

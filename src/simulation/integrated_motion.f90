@@ -15,7 +15,7 @@ module mech9_integrated_motion
   use mech9_integrator, only: integrator_type, integration_statistics_type, add_statistics
   use mech9_coordinate_choice, only: best_independent, carry_over, worth_taking
   use mech9_integrated_vector, only: pack_state
-  use mech9_motion_system, only: motion_system_type
+  use mech9_motion_system, only: motion_system_type, free_system
   use mech9_joint_passing, only: pass_law_joint => pass_joint
   use mech9_ball_angles, only: ball_angles_type
   use mech9_other_angles, only: take_angles, show_in_angles, set_in_partition
@@ -136,7 +136,7 @@ contains
       call replace_system(self, other)
       if (.not. allocated(err)) call self%begin(err)
     else
-      deallocate (other)
+      call free_system(other)
       if (made) call look_when_worse(self)
     end if
   end subroutine change_coordinates
@@ -234,7 +234,7 @@ contains
       call replace_system(self, other)
       if (.not. allocated(err)) call self%begin(err)
     else
-      deallocate (other)
+      call free_system(other)
     end if
   end subroutine change_angles
 
@@ -264,7 +264,7 @@ contains
     call stop_integrators(self)
     other%iterations = self%system%iterations
     self%work_before = self%work_done()
-    deallocate (self%system)
+    call free_system(self%system)
     self%system => other
     self%systems = self%systems + 1
     self%look_below = min(doubtful_conditioning, self%system%conditioning()/worthwhile_improvement)
@@ -510,7 +510,7 @@ contains
         call self%passage%hand_on(self%variable, self%system, err)
       if (.not. allocated(err)) call self%begin(err)
     else
-      deallocate (other)
+      call free_system(other)
       if (allocated(err)) return
       call raise(err, exit_singular, failure_unheld_stop)
       err%failure%t = self%t
@@ -594,7 +594,6 @@ contains
     class(integrated_motion_type), intent(inout) :: self   !< the motion
 
     call stop_integrators(self)
-    if (associated(self%system)) deallocate (self%system)
-    self%system => null()
+    call free_system(self%system)
   end subroutine close_motion
 end module mech9_integrated_motion

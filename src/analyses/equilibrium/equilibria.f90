@@ -83,7 +83,7 @@ contains
     type(error_type), allocatable, intent(out) :: err                 !< allocated if it failed
     class(interruption_type), intent(in), optional :: interruption    !< is asked before each start whether the search shall stop
     logical, intent(in), optional :: falls  !< the mechanism falls from random positions where forces do not become less; not unless given
-    type(equilibrium_type) :: found
+    class(equilibrium_type), allocatable :: found
     type(equilibrium_slot_type), allocatable :: slots(:)
     type(posture_type) :: posture
     type(random_type) :: random
@@ -92,7 +92,7 @@ contains
     integer :: i, n
     logical :: reached, may_fall
 
-    allocate (list(0), slots(16))
+    allocate (found, list(0), slots(16))
     n = 0
     may_fall = .false.
     if (present(falls)) may_fall = falls

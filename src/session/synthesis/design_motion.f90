@@ -30,7 +30,7 @@ contains
     type(model_type), intent(in) :: model                     !< with the values of the data file, and its objectives
     real(wp), intent(in) :: values(:)                         !< of all parameters
     real(wp), intent(in) :: q(:)                              !< (M) coordinates at the start of the run [rad, m]
-    type(design_motion_type), intent(out) :: motion           !< about to begin
+    class(design_motion_type), intent(inout) :: motion        !< a new one; then about to begin
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
 
     allocate (motion%model, motion%run)

@@ -102,11 +102,12 @@ contains
     class(variable_model_type), intent(inout) :: variable       !< the model as a function of its parameters
     type(synthesis_type), intent(in) :: synthesis               !< with its optima, best first
     type(diagnostics_type), intent(inout) :: diagnostics        !< gets the errors
-    type(design_motion_type), target :: motion
+    class(design_motion_type), allocatable, target :: motion
     type(error_type), allocatable :: err
 
     if (asked_to_end() .or. size(synthesis%optima) == 0) return
     if (size(self%plots) == 0 .and. .not. self%drawings%any_wanted()) return
+    allocate (motion)
     call new_design_motion(variable, synthesis%space%model, synthesis%values_of(1), synthesis%optima(1)%q, motion, err)
     if (allocated(err)) then
       call diagnostics%add_error(err)
