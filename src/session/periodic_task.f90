@@ -104,9 +104,11 @@ contains
       write (unit, '(a)') words
     end do
     do k = 1, size(motion%advance)
-      if (abs(motion%advance(k)) > 0.0_wp) &
-        write (unit, '(a)') 'coordinate '//to_text(k)//' goes on by '//to_text(motion%advance(k)/unit_of(mechanism, k), 10)//' '// &
-          trim(unit_name(mechanism, k))//' in a period; no force depends on it'
+      if (.not. abs(motion%advance(k)) > 0.0_wp) cycle
+      words = 'coordinate '//to_text(k)//' goes on by '//to_text(motion%advance(k)/unit_of(mechanism, k), 10)//' '// &
+              trim(unit_name(mechanism, k))//' in a period; no force depends on it'
+      call add_names(mechanism%names, words)
+      write (unit, '(a)') words
     end do
     write (unit, '(a)') 'multipliers '//multiplier_words(motion)
     write (unit, '(a)') stability_words(motion)
