@@ -19,6 +19,7 @@ module many_runs
   use mech9_run_maker, only: run_maker_type, made_run_type
   use mech9_variable_model, only: variable_model_type
   use mech9_held_start, only: held_start_type, hold_start
+  use mech9_exponents, only: exponents_found_type, find_exponents
   use mech9_synthesis, only: synthesis_type, new_synthesis
   use mech9_closed_search, only: found_design_type
   use mech9_search_check, only: check_synthesis
@@ -48,14 +49,15 @@ contains
       'reference/dynamics_fivebar', 'reference/kinematics_bennett', 'reference/dynamics_open_chain', &
       'reference/kinematics_fig1_driven_at_q1', 'input/malformed/links_apart', &
       'reference/dynamics_spatial_slider_crank', 'reference/kinematics_slider_crank', 'threads/study', 'threads/search', &
-      'threads/forced_search']
+      'threads/forced_search', 'threads/exponents']
     integer :: i, which
 
     allocate (runs(count))
     do i = 1, count
       which = 1 + modulo(i - 1, size(names))
       runs(i)%file = folder//'/'//trim(names(which))//'.nml'
-      if (index(names(which), '/dynamics') > 0 .or. index(names(which), '/forced') > 0) runs(i)%program = dynamics
+      if (index(names(which), '/dynamics') > 0 .or. index(names(which), '/forced') > 0 .or. &
+          index(names(which), '/exponents') > 0) runs(i)%program = dynamics
     end do
   end subroutine list_runs
 
@@ -84,6 +86,11 @@ contains
       run%done = .not. allocated(err)
       return
     end if
+    if (model%request%exponents%time > 0.0_wp) then
+      call find_means(model, run%rows, err)
+      run%done = .not. allocated(err)
+      return
+    end if
     ! short, so that the threads begin and end often
     model%request%time%intervals = 20
     if (run%program == dynamics) then
@@ -93,6 +100,26 @@ contains
     end if
     run%done = .not. allocated(err)
   end subroutine carry_out
+
+  !> Find the exponents of a motion from three starts.
+  subroutine find_means(model, rows, err)
+    type(model_type), intent(in) :: model                !< the model
+    real(wp), allocatable, intent(out) :: rows(:, :)     !< a column for each start
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
+    type(model_type), allocatable :: moved
+    type(exponents_found_type) :: found
+    integer :: i
+
+    allocate (rows(4, 3))
+    do i = 1, size(rows, 2)
+      allocate (moved, source=model)
+      moved%problem%initial%position(1) = 0.3_wp*i
+      call find_exponents(moved, 2, found, err)
+      deallocate (moved)
+      if (allocated(err)) return
+      rows(:, i) = [found%exponents, found%errors]
+    end do
+  end subroutine find_means
 
   !> Make the runs of a study, some of which fail.
   subroutine make_study(document, diagnostics, model, rows)

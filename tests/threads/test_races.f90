@@ -26,7 +26,7 @@ contains
     integer :: i, k
     logical :: failed
 
-    call list_runs(tester%tree//'/tests', 14, alone)
+    call list_runs(tester%tree//'/tests', 15, alone)
     do k = 1, size(alone)
       call carry_out(alone(k))
     end do
