@@ -33,7 +33,7 @@ class Function:
         self._columns = [self._mechanism.parameters.index(name) for name in self._names]
         self._places = [f"parameter('{name}').value".encode() for name in self._names]
         self._numbers: list[int] = []
-        self._analysis = lib.kinematics if self._mechanism.is_driven else lib.dynamics
+        self._is_driven = self._mechanism.is_driven
         self._with_gradients = self._mechanism.copy()
         self._with_gradients['output.gradients'] = True
 
@@ -46,7 +46,7 @@ class Function:
             call(lib.mechanism_set, mechanism._handle, place, value)
         handle = ctypes.c_void_p()
         try:
-            call(self._analysis, mechanism._handle, None, ctypes.byref(handle))
+            call(lib.kinematics if self._is_driven else lib.dynamics, mechanism._handle, None, ctypes.byref(handle))
             if not self._numbers:
                 self._numbers = self._find_numbers(handle)
         except BaseException:

@@ -134,6 +134,14 @@ class Positions(np.ndarray):
             # of other rows the codes are not known
             self.code = getattr(made_from, 'code', None) if self.shape == made_from.shape else None   # type: ignore[assignment]
 
+    def __reduce__(self) -> Any:
+        function, arguments, state = super().__reduce__()   # type: ignore[misc]
+        return function, arguments, (state, self.code)
+
+    def __setstate__(self, state: Any) -> None:
+        of_array, self.code = state
+        super().__setstate__(of_array)
+
 
 class Mechanism:
     """A mechanism: groups of a data file in memory.

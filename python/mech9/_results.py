@@ -40,6 +40,25 @@ class _Memory:
     def __del__(self) -> None:
         lib.results_destroy(self.handle)
 
+    def text(self) -> bytes:
+        """The report."""
+        return lib.results_text(self.handle) or b'{}'
+
+    def __reduce__(self) -> Any:
+        """What another process gets, and a copy: the report. The table travels as an array."""
+        return _Report, (self.text(),)
+
+
+class _Report:
+    """The report of results that come from another process, or are a copy."""
+    handle = None
+
+    def __init__(self, text: bytes):
+        self._text = text
+
+    def text(self) -> bytes:
+        return self._text
+
 
 @dataclass(frozen=True)
 class Matrix:
@@ -74,7 +93,7 @@ class Results(Mapping[str, np.ndarray]):
 
     def __init__(self, handle: int, list_parameters: Callable[[], tuple[str, ...]] = tuple):
         memory = _Memory(handle)
-        self._memory = memory
+        self._memory: _Memory | _Report = memory
         self.names: tuple[str, ...] = tuple(lib.results_name(handle, i).decode() for i in range(lib.results_columns(handle)))
         self.units: dict[str, str] = {name: lib.results_unit(handle, i).decode() for i, name in enumerate(self.names)}
         self.table: np.ndarray = (np.asarray(memory) if hasattr(memory, '__array_interface__')
@@ -94,7 +113,7 @@ class Results(Mapping[str, np.ndarray]):
         """How a run ended and the work that it took, or what was found of a cam, as the option --report writes it.
 
         That of equilibria, modes, assemblies, ranges and cams has the names of links and coordinates; other analyses have none."""
-        return dict(json.loads(lib.results_text(self._memory.handle) or b'{}'))
+        return dict(json.loads(self._memory.text()))
 
     @property
     def events(self) -> list[dict[str, Any]]:
@@ -150,6 +169,8 @@ class Results(Mapping[str, np.ndarray]):
         """Write a run to an HDF5 file, as the programs write theirs (needs h5py). A file of this name is replaced when the new one is
         whole; a file that the mechanism reads is not."""
         mechanism = self._run_mechanism('only the results of kinematics and dynamics can be written')
+        if self._memory.handle is None:
+            raise UsageError('these results are a copy, or come from another process; write them there, where they were computed', 2)
         write_run(self._memory.handle, mechanism, path)
 
     def plot(self, *columns: str) -> Any:

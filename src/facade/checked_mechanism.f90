@@ -25,7 +25,7 @@ module mech9_checked_mechanism
   use mech9_varied_document, only: varied_document_type, new_varied_document
   use mech9_diagnostics, only: diagnostics_type
   use mech9_findings, only: finding_type, fail_as
-  use mech9_numbers_of_parameters, only: refuse_set_by_parameter, refuse_override
+  use mech9_numbers_of_parameters, only: refuse_set_by_parameter, refuse_override, find_unwritten_value
   use mech9_parser, only: read_document, parse_document
   use mech9_drive_reader, only: files_of_groups
   use mech9_reader, only: read_model
@@ -338,11 +338,16 @@ contains
     type(document_type) :: document
     type(parameter_type), allocatable :: parameters(:)
     type(number_place_type) :: place
-    type(diagnostics_type) :: diagnostics
+    type(diagnostics_type) :: diagnostics, anew
+    type(error_type), allocatable :: of_place
 
     value = ieee_value(value, ieee_quiet_nan)
     call find_named(self, name, .false., document, place, diagnostics, err)
-    if (allocated(err)) return
+    if (allocated(err)) then
+      call find_named(self, name, .true., document, place, anew, of_place)
+      if (.not. allocated(of_place)) call find_unwritten_value(document, place, anew, value, err)
+      return
+    end if
     ! a parameter may set the number to another one than the file gives
     call read_parameters(document, parameters, diagnostics)
     value = document%groups(place%group)%items(place%item)%values(place%value)%number

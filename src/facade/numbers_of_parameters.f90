@@ -1,5 +1,6 @@
 !> Numbers that follow the values of parameters: nothing else may set them.
 module mech9_numbers_of_parameters
+  use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_usage
   use mech9_text, only: to_text
   use mech9_source, only: source_type
@@ -13,7 +14,7 @@ module mech9_numbers_of_parameters
   use mech9_diagnostics, only: diagnostics_type
   implicit none
   private
-  public :: refuse_set_by_parameter, refuse_override
+  public :: refuse_set_by_parameter, refuse_override, find_unwritten_value
 
 contains
 
@@ -88,4 +89,36 @@ contains
       return
     end do
   end subroutine refuse_override
+
+  !> Find the value of a parameter whose group gives none: that of the number which it sets.
+  subroutine find_unwritten_value(document, place, diagnostics, value, err)
+    type(document_type), intent(in) :: document                 !< checked; an item of the name was added at the end of its group
+    type(number_place_type), intent(in) :: place                !< of that item
+    type(diagnostics_type), intent(in) :: diagnostics           !< with the sources
+    real(wp), intent(inout) :: value                            !< in the unit of the data file; unchanged where it is no such value
+    type(error_type), allocatable, intent(inout) :: err         !< not allocated on return where it is found
+    type(document_type) :: written
+    type(parameter_type), allocatable :: parameters(:)
+    type(diagnostics_type) :: none_found
+    integer, allocatable :: groups(:)
+    integer :: i
+
+    associate (group => document%groups(place%group))
+      if (group%name /= 'parameter') return
+      if (group%items(place%item)%name /= 'value') return
+    end associate
+    written = document
+    associate (group => written%groups(place%group))
+      group%items = group%items(:size(group%items) - 1)
+    end associate
+    none_found%sources = diagnostics%sources
+    groups = groups_of_parameters(written)
+    call read_parameters(written, parameters, none_found)
+    if (none_found%failed()) return
+    do i = 1, size(groups)
+      if (groups(i) /= place%group) cycle
+      value = parameters(i)%value
+      if (allocated(err)) deallocate (err)
+    end do
+  end subroutine find_unwritten_value
 end module mech9_numbers_of_parameters

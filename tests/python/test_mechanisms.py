@@ -1,8 +1,10 @@
 """Mechanisms in Python: read, built, changed, copied, written, and wrong ones told."""
 import copy
+import gc
 import os
 import pickle
 
+import numpy as np
 import pytest
 
 from mech9_cases import TREE, text_of
@@ -50,6 +52,36 @@ def test_text_makes_the_same_mechanism(mech9, four_bar):
     assert again['pair(2).point(1)'] == 0.1 + 0.2
     assert (again.kinematics().table == four_bar.kinematics().table).all()
     assert pickle.loads(pickle.dumps(four_bar)).text() == four_bar.text()
+
+
+@pytest.mark.parametrize('sent', (lambda one: pickle.loads(pickle.dumps(one)), copy.deepcopy), ids=('pickled', 'copied'))
+def test_answers_that_another_process_gets_hold_their_numbers(mech9, four_bar, sent):
+    """They share no memory with the library: those that they come from may go."""
+    run, q = four_bar.kinematics(), four_bar.positions(np.linspace(0, 1, 4))
+    table, report, P = run.table.copy(), run.report, run['P.y'].copy()
+    got, positions = sent(run), sent(q)
+    f = sent(four_bar.add('quantity', name='top', of='P.y', take='max').function(['pair(2).point(1)'], ['top']))
+    del run
+    gc.collect()
+    again = sent(got)
+    del got
+    gc.collect()
+    assert (again.table == table).all() and (again['P.y'] == P).all() and again.report == report
+    assert (positions == q).all() and (positions.code == q.code).all()
+    assert f([0.3])[0] == four_bar.kinematics().quantities['top']
+    with pytest.raises(mech9.UsageError, match='write them there'):
+        again.write('none.h5')
+
+
+def test_the_value_of_a_parameter_without_one_is_its_number(mech9, four_bar):
+    four_bar.add('parameter', name='crank', sets='pair(2).point(1)', low=0.2, high=0.4)
+    four_bar.add('parameter', name='twice', sets='pair(3).point(1)', low=0.7, high=0.9)
+    assert four_bar['crank'] == 0.3 and four_bar["parameter('twice').value"] == 0.8 and four_bar['parameter(2).value'] == 0.8
+    four_bar.add('quantity', name='top', of='P.y', take='max')
+    runs = four_bar.study(crank=[0.25, 0.3])
+    assert (np.asarray(runs['twice']) == 0.8).all()
+    with pytest.raises(mech9.DataError, match='write it first'):
+        four_bar['parameter(1).count']
 
 
 def test_copies_are_independent(mech9, four_bar):
