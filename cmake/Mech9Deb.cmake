@@ -44,9 +44,9 @@ mech9_deb(programs mech9 science "kinematics and dynamics of spatial mechanisms"
   "The programs mech9k and mech9d analyse spatial mechanisms with closed
 chains from structural data: positions, forces, equilibria, vibrations,
 studies and synthesis. A user gives numbers and writes no equations.")
-mech9_deb(mpi mech9-mpi science "studies of mechanisms in several processes"
-  "The programs mech9k-mpi and mech9d-mpi share the runs of a study among
-the processes of MPI.")
+mech9_deb(mpi mech9-mpi science "studies and searches in several processes"
+  "The programs mech9k-mpi and mech9d-mpi share the runs of a study, or the
+starts of a search, among the processes of MPI.")
 mech9_deb(library libmech9-0 libs "library for the analysis of spatial mechanisms"
   "The shared library for programs in C, C++ and Python that analyse
 spatial mechanisms with closed chains.")

@@ -7,7 +7,7 @@ option(MECH9_LTO "release: optimise across the files of the computing floors (a 
 option(MECH9_SYMBOLS "release: keep the names of procedures in mech9k and mech9d, for profilers" OFF)
 option(MECH9_LINE_EDITING "edit lines at the terminal by libedit, where it is found" ON)
 option(MECH9_THREADS "make the runs of a study in threads by OpenMP, where it is found" ON)
-option(MECH9_MPI "build mech9k-mpi and mech9d-mpi, studies in several processes" OFF)
+option(MECH9_MPI "build mech9k-mpi and mech9d-mpi, studies and searches in several processes" OFF)
 option(MECH9_SHARED "build libmech9.so, the library for C, C++ and Python" OFF)
 option(MECH9_PYTHON "install the library and the programs into the Python package mech9" OFF)
 set(MECH9_COMPILED "" CACHE PATH "a build folder whose objects and modules of the library are linked, in place of compiling them (packaging/)")

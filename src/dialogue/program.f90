@@ -9,7 +9,7 @@ module mech9_program
   use mech9_system, only: exit_program, leave_quit_alone
   use mech9_session, only: carry_out, asks_for_text
   use mech9_task, only: task_type
-  use mech9_study_processes, only: study_processes_type
+  use mech9_processes, only: processes_type
   use mech9_importing, only: import_robot
   use mech9_converse, only: converse
   implicit none
@@ -44,7 +44,7 @@ contains
     type(string_type), intent(in) :: words(:)  !< words of the command line without the program's name
     integer, intent(out) :: code               !< exit code of the program
     type(command_line_type) :: options
-    type(study_processes_type) :: processes
+    type(processes_type) :: processes
     type(string_type), allocatable :: inputs(:)
     type(error_type), allocatable :: err
 

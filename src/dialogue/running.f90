@@ -10,7 +10,7 @@ module mech9_running
   use mech9_kept_rows, only: kept_rows_type
   use mech9_rows_text, only: all_rows_text, digits_of_summary
   use mech9_task, only: task_type
-  use mech9_study_processes, only: study_processes_type
+  use mech9_processes, only: processes_type
   use mech9_session, only: run_file
   use mech9_conversation, only: conversation_type, going, finished
   use mech9_closing, only: write_data_file
@@ -30,7 +30,7 @@ contains
     character(len=*), intent(in) :: path                     !< the data file of the conversation, or its draft
     integer, intent(out) :: code                             !< exit code of the last run
     type(kept_rows_type) :: kept, earlier, found
-    type(study_processes_type) :: processes
+    type(processes_type) :: processes
     character(len=:), allocatable :: request
     integer :: next
     logical :: changed, saved_again
@@ -81,7 +81,7 @@ contains
     type(string_type), allocatable :: words(:)
     type(command_line_type) :: options
     type(error_type), allocatable :: err
-    type(study_processes_type) :: processes
+    type(processes_type) :: processes
     character(len=:), allocatable :: file
     integer :: i, code
 

@@ -8,6 +8,7 @@ module mech9_recorded_optimum
   use mech9_simulation, only: interruption_type
   use mech9_user_calls, only: calls_user_procedures
   use mech9_search_starts, only: search_starts_type
+  use mech9_processes, only: processes_type
   use mech9_search, only: optimum_search_type, check_request
   use mech9_varied_document, only: varied_document_type
   use mech9_checked_mechanism, only: checked_mechanism_type
@@ -51,6 +52,7 @@ contains
     type(varied_document_type), target :: variable
     type(optimum_search_type), allocatable, target :: search
     type(told_starts_type) :: starts
+    type(processes_type) :: alone
     integer :: made_by
 
     call forget(self)
@@ -68,7 +70,7 @@ contains
       ! a user's procedures may keep numbers from call to call
       made_by = max(1, threads)
       if (calls_user_procedures(model)) made_by = 1
-      call search%make(model, made_by, starts, err)
+      call search%make(model, alone, made_by, starts, err)
       call take_designs(self, model, search)
     end if
     call mechanism%point_at(err)

@@ -14,7 +14,8 @@ module mech9_search
   use mech9_synthesis, only: synthesis_type, new_synthesis
   use mech9_search_check, only: check_synthesis
   use mech9_search_starts, only: search_starts_type
-  use mech9_start_threads, only: make_in_threads
+  use mech9_processes, only: processes_type
+  use mech9_search_processes, only: lead_search, follow_search
   implicit none
   private
   public :: optimum_search_type, check_request
@@ -30,6 +31,7 @@ module mech9_search
   contains
     procedure :: prepare
     procedure :: make
+    procedure :: follow
   end type optimum_search_type
 
 contains
@@ -79,14 +81,15 @@ contains
 
   !> Make all starts that are missing, and keep the designs that hold. Fails where no design is found, where the user interrupts and
   !> where the starts cannot be kept; the starts so far then count.
-  subroutine make(self, model, threads, starts, err)
+  subroutine make(self, model, processes, threads, starts, err)
     class(optimum_search_type), intent(inout) :: self        !< the search, prepared
     type(model_type), intent(in) :: model                    !< its model
-    integer, intent(in) :: threads                           !< how many make the starts
+    type(processes_type), intent(in) :: processes            !< those that make the starts together; this one is the first of them
+    integer, intent(in) :: threads                           !< how many make the starts where there is one process
     class(search_starts_type), intent(inout) :: starts       !< begun
     type(error_type), allocatable, intent(out) :: err        !< allocated if it failed
 
-    call make_in_threads(self%searched, self%synthesis, model%request%optimum%seed, min(threads, most_threads), starts)
+    call lead_search(processes, self%searched, self%synthesis, model%request%optimum%seed, min(threads, most_threads), starts)
     call starts%finish(self%synthesis)
     if (allocated(starts%stopped)) err = starts%stopped
     call self%synthesis%keep_verified()
@@ -96,4 +99,12 @@ contains
                '; give more starts in &optimum, or other ranges of the parameters'// &
                trim(merge(' and limits', '           ', size(model%request%limits) > 0)))
   end subroutine make
+
+  !> Make the starts that the first process hands out.
+  subroutine follow(self, model)
+    class(optimum_search_type), intent(in) :: self           !< the search, prepared
+    type(model_type), intent(in) :: model                    !< its model
+
+    call follow_search(self%searched, self%synthesis, model%request%optimum%seed)
+  end subroutine follow
 end module mech9_search

@@ -25,6 +25,7 @@ module mech9_search_starts
 
   type :: search_starts_type
     type(start_type), allocatable :: made(:)         !< all starts; those that were made before have their designs from the beginning
+    integer :: part(2) = 1                           !< number of the part that is to be made, and how many parts there are
     type(error_type), allocatable :: stopped         !< allocated where the starts cannot be kept, or the user interrupts
     class(interruption_type), allocatable, private :: interruption
     integer, private :: handed_out = 0               !< starts that were handed out or skipped, the first ones
@@ -45,14 +46,22 @@ contains
   subroutine begin(self, interruption)
     class(search_starts_type), intent(inout) :: self        !< with room for all starts, and with those that were made before
     class(interruption_type), intent(in) :: interruption    !< is asked before each start whether the search shall stop
-    integer :: i
 
     allocate (self%interruption, source=interruption)
-    self%missing = count([(.not. allocated(self%made(i)%found), i=1, size(self%made))])
+    self%missing = count_missing(self)
     call self%tell_progress(0.0_wp)
   end subroutine begin
 
-  !> The number of a start to be made next, or all_handed_out. Starts that were made before are not handed out.
+  !> How many starts of the part are not made.
+  pure integer function count_missing(self) result(n)
+    class(search_starts_type), intent(in) :: self           !< the starts
+    integer :: i
+
+    n = count([(.not. allocated(self%made(i)%found), i=self%part(1), size(self%made), self%part(2))])
+  end function count_missing
+
+  !> The number of a start to be made next, or all_handed_out. Starts that were made before are not handed out, nor are those of other
+  !> parts.
   integer function hand_out(self) result(number)
     class(search_starts_type), intent(inout) :: self        !< the starts
 
@@ -61,7 +70,7 @@ contains
     if (self%interruption%is_wanted()) return
     do while (self%handed_out < size(self%made))
       self%handed_out = self%handed_out + 1
-      if (allocated(self%made(self%handed_out)%found)) cycle
+      if (allocated(self%made(self%handed_out)%found) .or. modulo(self%handed_out - self%part(1), self%part(2)) /= 0) cycle
       number = self%handed_out
       return
     end do
@@ -99,13 +108,14 @@ contains
   subroutine finish(self, synthesis)
     class(search_starts_type), intent(inout) :: self        !< the starts
     type(synthesis_type), intent(inout) :: synthesis        !< gets the designs
-    integer :: i
+    integer :: i, n
 
     do i = 1, size(self%made)
       if (allocated(self%made(i)%found)) call synthesis%add(i, self%made(i)%found)
     end do
-    if (synthesis%done < size(self%made) .and. .not. allocated(self%stopped)) &
+    n = count_missing(self)
+    if (n > 0 .and. .not. allocated(self%stopped)) &
       call raise(self%stopped, exit_interrupted, 'interrupted: '//to_text(synthesis%done)//' of '// &
-                 counted(size(self%made), 'start')//' are made')
+                 counted(synthesis%done + n, 'start')//' are made')
   end subroutine finish
 end module mech9_search_starts

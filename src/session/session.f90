@@ -24,9 +24,9 @@ module mech9_session
   use mech9_task, only: task_type, answers_only
   use mech9_report_parts, only: save_short_report
   use mech9_study_task, only: work_on_study
-  use mech9_study_processes, only: study_processes_type
+  use mech9_processes, only: processes_type
   use mech9_dakota_task, only: work_for_dakota
-  use mech9_study_merge, only: merge_studies
+  use mech9_part_merge, only: merge_parts
   use mech9_optimum_task, only: work_on_optimum
   use mech9_choice_check, only: judge_choice_of
   use mech9_unused_options, only: print_unused_options
@@ -42,7 +42,7 @@ contains
   subroutine carry_out(task, options, processes, code)
     class(task_type), intent(in) :: task                     !< the work of this program
     type(command_line_type), intent(in) :: options           !< the command line
-    type(study_processes_type), intent(inout) :: processes   !< those that make studies together
+    type(processes_type), intent(inout) :: processes   !< those that make studies and searches together
     integer, intent(out) :: code                             !< exit code of the program
     type(error_type), allocatable :: err
 
@@ -55,7 +55,7 @@ contains
       call show_data_help(task, options%argument('help-data'), code)
     else if (options%has('merge')) then
       call catch_size_limit()
-      call merge_studies(options, code)
+      call merge_parts(options, code)
     else
       call run_file(task, options, options%file, processes, code)
     end if
@@ -90,7 +90,7 @@ contains
     class(task_type), intent(in) :: task                    !< the work of this program
     type(command_line_type), intent(in) :: options          !< the command line
     character(len=*), intent(in) :: path                    !< of the data file
-    type(study_processes_type), intent(inout) :: processes  !< those that make studies together
+    type(processes_type), intent(inout) :: processes  !< those that make studies and searches together
     integer, intent(out) :: code                            !< exit code of the program
     type(kept_rows_type), intent(inout), optional :: kept   !< the rows of the run, for who looks at them after it
     type(document_type) :: document
@@ -147,7 +147,7 @@ contains
         else if (.not. allocated(err) .and. options%has('study')) then
           call work_on_study(options, document, variable, model, diagnostics, reported, processes)
         else if (.not. allocated(err) .and. options%has('optimize')) then
-          call work_on_optimum(options, document, variable, model, diagnostics, reported)
+          call work_on_optimum(options, document, variable, model, diagnostics, reported, processes)
         else if (.not. allocated(err)) then
           call task%work(options, model, variable, diagnostics, reported, kept)
         end if

@@ -1,19 +1,19 @@
 !> A process that is alone makes the runs of a study in threads.
-submodule (mech9_study_processes) mech9_one_process
+submodule (mech9_processes) mech9_one_process
   use mech9_study_threads, only: make_in_threads
   implicit none
 
 contains
 
   module subroutine agree(self, err)
-    class(study_processes_type), intent(inout) :: self    !< the process
+    class(processes_type), intent(inout) :: self    !< the process
     type(error_type), allocatable, intent(inout) :: err   !< unchanged
 
     self%agreements = self%agreements + 1
   end subroutine agree
 
   module subroutine lead(self, model, varied, threads, interruption, runs)
-    class(study_processes_type), intent(in) :: self       !< the process
+    class(processes_type), intent(in) :: self       !< the process
     type(model_type), intent(in) :: model                 !< the model with the values of the data file
     class(variable_model_type), intent(in) :: varied      !< the model as a function of its parameters
     integer, intent(in) :: threads                        !< how many make the runs
@@ -25,7 +25,7 @@ contains
 
   !> There is no other process to call it.
   module subroutine follow(self, model, varied, interruption)
-    class(study_processes_type), intent(in) :: self       !< the process
+    class(processes_type), intent(in) :: self       !< the process
     type(model_type), intent(in) :: model                 !< unused
     class(variable_model_type), intent(in) :: varied      !< unused
     class(interruption_type), intent(in) :: interruption  !< unused

@@ -150,7 +150,7 @@ contains
     call refuse(tester, '--dialogue|a.nml|--set|time.end=2', 'this is a conversation; --set is for a data file alone')
     call refuse(tester, '--edit|a.nml|--check', 'this is a conversation; --check is for a data file alone')
     call refuse(tester, '--check', 'no data file')
-    call refuse(tester, 'a.nml|--part|1/2', '--part K/N is a part of --study')
+    call refuse(tester, 'a.nml|--part|1/2', '--part K/N is a part of --study or --optimize')
     call refuse(tester, 'a.nml|--threads|2', '--threads N is the number of threads of --study')
     call refuse(tester, 'a.nml|--study|--part|3/2', '--part needs the number K of a part, from 1 to N')
     call refuse(tester, 'a.nml|--study|--check', 'leave --check out')

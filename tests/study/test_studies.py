@@ -144,7 +144,7 @@ def test_rows_of_three_parts_are_those_of_the_whole_study(cases, mech9k):
 
 def test_a_part_belongs_to_a_study(cases, mech9k):
     done = run(mech9k, cases.write(THREE_BY_THREE), '--part', '1/3')
-    cases.checks.true(done.returncode == USAGE and '--part K/N is a part of --study' in done.stderr, 'parts of a study only', done.stderr)
+    cases.checks.true(done.returncode == USAGE and '--part K/N is a part of --study or --optimize' in done.stderr, 'parts of studies and searches only', done.stderr)
 
 
 @pytest.mark.parametrize('wrong', ('8/7', '0/3', '3', 'a/b', '1/2/3'))

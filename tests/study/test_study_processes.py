@@ -145,7 +145,7 @@ def made_runs(file):
 
 @pytest.mark.parametrize('words, code, message', (
     (('--study', '--table', 'none/table.dat'), FILE, 'none/table.dat'),
-    ((), USAGE, 'several processes make the runs of a study; add --study, or use mech9k'),
+    ((), USAGE, 'several processes make the runs of a study or the starts of a search; add --study or --optimize, or use mech9k'),
     (('--study', '--threads', '2'), USAGE, '--threads is for one process'),
     (('--study', '--part', '4/3'), USAGE, '--part needs the number K'),
     (('--study', '--plot', 'stroek'), USAGE, "did you mean 'stroke'?")), ids=('no folder', 'no study', 'threads', 'part', 'plot'))

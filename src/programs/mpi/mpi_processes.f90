@@ -3,7 +3,7 @@
 !> Runs are handed out in batches, each as long as some milliseconds of work. Every process has two batches, so that it works on the
 !> second one while the results of the first one are on their way. The first process makes runs, too, one at a time, and looks for
 !> messages between them.
-submodule (mech9_study_processes) mech9_mpi_processes
+submodule (mech9_processes) mech9_mpi_processes
   use mpi_f08, only: MPI_COMM_WORLD, MPI_ANY_SOURCE, MPI_INTEGER, MPI_DOUBLE_PRECISION, MPI_CHARACTER, MPI_Status, MPI_Allgather, &
                      MPI_Iprobe, MPI_Get_count, MPI_Recv, MPI_Send
   use mech9_kinds, only: wp
@@ -31,7 +31,7 @@ submodule (mech9_study_processes) mech9_mpi_processes
 contains
 
   module subroutine agree(self, err)
-    class(study_processes_type), intent(inout) :: self    !< the processes
+    class(processes_type), intent(inout) :: self    !< the processes
     type(error_type), allocatable, intent(inout) :: err   !< allocated if this process cannot go on; afterwards if any cannot
     integer :: codes(self%count), code, other
 
@@ -50,7 +50,7 @@ contains
 
   !> The first process makes some of the runs, too.
   module subroutine lead(self, model, varied, threads, interruption, runs)
-    class(study_processes_type), intent(in) :: self       !< the processes
+    class(processes_type), intent(in) :: self       !< the processes
     type(model_type), intent(in) :: model                 !< the model with the values of the data file
     class(variable_model_type), intent(in) :: varied      !< the model as a function of its parameters
     integer, intent(in) :: threads                        !< unused: each process has one
@@ -173,7 +173,7 @@ contains
   end subroutine take_batch
 
   module subroutine follow(self, model, varied, interruption)
-    class(study_processes_type), intent(in) :: self       !< the processes
+    class(processes_type), intent(in) :: self       !< the processes
     type(model_type), intent(in) :: model                 !< the model with the values of the data file
     class(variable_model_type), intent(in) :: varied      !< the model as a function of its parameters
     class(interruption_type), intent(in) :: interruption  !< is asked whether a run shall stop

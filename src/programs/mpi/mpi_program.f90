@@ -1,4 +1,4 @@
-!> A program of several processes, from the words of its command line to its exit code. It makes studies and nothing else.
+!> A program of several processes, from the words of its command line to its exit code. It makes studies and searches, and nothing else.
 module mech9_mpi_program
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
   use, intrinsic :: ieee_exceptions, only: ieee_usual, ieee_get_halting_mode, ieee_set_halting_mode, ieee_set_flag
@@ -10,7 +10,7 @@ module mech9_mpi_program
   use mech9_system, only: exit_program, leave_quit_alone
   use mech9_session, only: carry_out, asks_for_text
   use mech9_task, only: task_type
-  use mech9_study_processes, only: study_processes_type
+  use mech9_processes, only: processes_type
   implicit none
   private
   public :: run_mpi_program
@@ -55,7 +55,7 @@ contains
     class(task_type), intent(in) :: task  !< computation of the program: kinematics or dynamics
     logical, intent(in) :: is_first       !< this is the first process
     integer, intent(out) :: code          !< exit code of this process
-    type(study_processes_type) :: processes
+    type(processes_type) :: processes
     type(command_line_type) :: options
     type(error_type), allocatable :: err
 
@@ -68,14 +68,14 @@ contains
     processes%is_first = is_first
     call MPI_Comm_size(MPI_COMM_WORLD, processes%count)
     call carry_out(task, options, processes, code)
-    ! a process that did not come to a study tells the others, which may have done so
+    ! a process that did not come to its study or search tells the others, which may have done so
     if (processes%agreements > 0) return
-    if (code /= 0) call raise(err, code, 'this process did not come to a study')
+    if (code /= 0) call raise(err, code, 'this process did not come to its study or search')
     call processes%agree(err)
     if (allocated(err)) code = err%code
   end subroutine run_processes
 
-  !> Read the command line. It must be that of a study.
+  !> Read the command line. It must be that of a study or a search.
   subroutine read_options(program, options, err)
     integer, intent(in) :: program                        !< kinematics or dynamics
     type(command_line_type), intent(out) :: options       !< the command line
@@ -85,10 +85,11 @@ contains
     call get_command_words(words)
     call parse_command_line(words, program, options, err)
     if (allocated(err) .or. asks_for_text(options)) return
-    if (.not. options%has('study')) then
-      call raise(err, exit_usage, 'several processes make the runs of a study; add --study, or use '//program_names(program))
+    if (.not. (options%has('study') .or. options%has('optimize'))) then
+      call raise(err, exit_usage, 'several processes make the runs of a study or the starts of a search; add --study or '// &
+                 '--optimize, or use '//program_names(program))
     else if (options%has('threads')) then
-      call raise(err, exit_usage, '--threads is for one process; here mpirun -n tells how many make the runs')
+      call raise(err, exit_usage, '--threads is for one process; here mpirun -n tells how many there are')
     end if
   end subroutine read_options
 end module mech9_mpi_program

@@ -63,8 +63,8 @@ contains
       call judge_import(given, has_file, err)
     else if (has('merge')) then
       call judge_merge(given, has_file, err)
-    else if (has('part') .and. .not. has('study')) then
-      call raise(err, exit_usage, '--part K/N is a part of --study; give both')
+    else if (has('part') .and. .not. (has('study') .or. has('optimize'))) then
+      call raise(err, exit_usage, '--part K/N is a part of --study or --optimize; give one of them, too')
     else if (has('threads') .and. .not. (has('study') .or. has('optimize'))) then
       call raise(err, exit_usage, '--threads N is the number of threads of --study or --optimize; give one of them, too')
     else if (has('continue') .and. .not. (has('study') .or. has('optimize'))) then
@@ -143,9 +143,9 @@ contains
     integer :: i
 
     if (has_file) then
-      call raise(err, exit_usage, 'a data file is given beside --merge, which reads the files of a study alone; leave it out')
+      call raise(err, exit_usage, 'a data file is given beside --merge, which reads the files of parts alone; leave it out')
     else if (count(given == 'merge') < 2) then
-      call raise(err, exit_usage, '--merge joins the files of parts of a study; give two of them or more')
+      call raise(err, exit_usage, '--merge joins the files of parts of a study or search; give two of them or more')
     else if (.not. (any(given == 'hdf5') .or. any(given == 'table'))) then
       call raise(err, exit_usage, '--merge needs the file that it makes: give --hdf5 FILE.h5, or --table FILE')
     end if

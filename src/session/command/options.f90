@@ -79,13 +79,13 @@ module mech9_options
     option_type('study', no_argument, '', any_text, .false., both, &
                 'make the runs of the group &study; the table has a row for each'), &
     option_type('part', needed_argument, 'K/N', part_of_whole, .false., both, &
-                'make part K of N parts of a study, for N jobs'), &
+                'make part K of N parts of a study or search, for N jobs'), &
     option_type('threads', needed_argument, 'N', whole_number, .false., both, &
                 'make a study or a search in N threads; without it one for each core'), &
     option_type('continue', needed_argument, 'FILE.h5', any_text, .false., both, &
                 'make what the HDF5 file of a study or search does not have yet'), &
     option_type('merge', needed_argument, 'FILE FILE ...', any_text, .false., both, &
-                'join the HDF5 files of parts of a study to one, that of --hdf5', unlimited_arguments), &
+                'join the HDF5 files of parts of a study or search to one, that of --hdf5', unlimited_arguments), &
     option_type('optimize', no_argument, '', any_text, .false., both, &
                 'find the parameters with which the groups &objective are met best'), &
     option_type('dakota', needed_argument, 'PARAMS RESULTS', any_text, .false., both, &

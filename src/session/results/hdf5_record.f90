@@ -1,13 +1,14 @@
-!> The origin of results in an HDF5 file that a program writes.
+!> The origin of results in an HDF5 file that a program writes, or joins of parts.
 module mech9_hdf5_record
   use mech9_program_kind, only: program_names
   use mech9_model, only: model_type
   use mech9_provenance_layout, only: origin_type, write_origin, set_present_time
   use mech9_hdf5_file, only: hdf5_file_type, hdf5_version
+  use mech9_hdf5_reading, only: read_text
   use mech9_command_line, only: command_line_type
   implicit none
   private
-  public :: write_provenance
+  public :: write_provenance, copy_provenance
 
 contains
 
@@ -29,4 +30,20 @@ contains
     origin%storage = hdf5_version()
     call write_origin(file, model%mechanism%title, origin)
   end subroutine write_provenance
+
+  !> Copy the origin of the first part.
+  subroutine copy_provenance(from, to)
+    type(hdf5_file_type), intent(inout) :: from   !< the file of the part
+    type(hdf5_file_type), intent(inout) :: to     !< the file of the whole study or search
+    character(len=*), parameter :: names(*) = [character(len=12) :: 'program', 'version', 'revision', 'compiler', 'libraries', &
+                                               'created', 'command_line', 'data_file', 'data']
+    character(len=:), allocatable :: text
+    integer :: i
+
+    do i = 1, size(names)
+      call read_text(from, 'provenance/'//trim(names(i)), text)
+      call to%put('provenance/'//trim(names(i)), text, 'of the first part')
+    end do
+    if (allocated(from%failure)) call to%fail("the origin in '"//from%path//"' cannot be read")
+  end subroutine copy_provenance
 end module mech9_hdf5_record

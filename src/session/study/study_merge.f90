@@ -2,19 +2,15 @@
 module mech9_study_merge
   use, intrinsic :: iso_fortran_env, only: error_unit
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
-  use mech9_program_kind, only: program_names
   use mech9_kinds, only: wp, long
   use mech9_text, only: string_type, to_text
   use mech9_counted, only: counted
   use mech9_error, only: error_type, raise, exit_done, exit_file
   use mech9_version, only: name_and_version
-  use mech9_request, only: output_settings_type
   use mech9_command_line, only: command_line_type
-  use mech9_hdf5_file, only: hdf5_file_type
-  use mech9_hdf5_reading, only: read_text
+  use mech9_hdf5_record, only: copy_provenance
   use mech9_table, only: table_type
   use mech9_heading, only: new_heading
-  use mech9_overwriting, only: refuse_overwriting
   use mech9_study_definition, only: tell_difference
   use mech9_study_file, only: study_file_type, not_made
   use mech9_study_layout, only: study_layout_type
@@ -35,32 +31,25 @@ module mech9_study_merge
 
 contains
 
-  !> Join the files that --merge names, to the file that --hdf5 names and a table; `code` is the exit code of the program.
-  subroutine merge_studies(options, code)
-    type(command_line_type), intent(in) :: options   !< the command line
-    integer, intent(out) :: code                     !< exit code
-    type(string_type), allocatable :: paths(:)
+  !> Join the runs of several files to the file that --hdf5 names and a table.
+  subroutine merge_studies(options, paths, err)
+    type(command_line_type), intent(in) :: options        !< the command line
+    type(string_type), intent(in) :: paths(:)             !< of the files
+    type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
     type(study_file_type), allocatable :: files(:)
     type(study_sums_type) :: sums
     type(overlap_type) :: overlap
-    type(error_type), allocatable :: err, at_close
+    type(error_type), allocatable :: at_close
     integer :: i
 
-    call options%arguments('merge', paths)
-    call refuse_overwriting(options, paths, err, output_settings_type(table='', hdf5='', sketch='', animation=''))
     allocate (files(size(paths)))
-    if (.not. allocated(err)) call open_files(paths, files, err)
+    call open_files(paths, files, err)
     if (.not. allocated(err)) call join(options, paths, files, sums, overlap, err)
     do i = 1, size(files)
       call files(i)%close(at_close)
     end do
-    code = exit_done
-    if (allocated(err)) then
-      code = err%code
-      write (error_unit, '(3a)') program_names(options%program), ': ', err%message
-    else if (.not. options%has('quiet')) then
+    if (.not. (allocated(err) .or. options%has('quiet'))) &
       call print_merge(options, paths, files(1)%layout%runs, sums, overlap)
-    end if
   end subroutine merge_studies
 
   !> Open all files. Fail with exit_file where one is not of the study of the first one.
@@ -204,22 +193,6 @@ contains
     end do
     call table%open(path, new_heading(layout%title, names, units), name_and_version(program), err)
   end subroutine open_table
-
-  !> Copy the origin of the first part.
-  subroutine copy_provenance(from, to)
-    type(hdf5_file_type), intent(inout) :: from   !< the file of the part
-    type(hdf5_file_type), intent(inout) :: to     !< the file of the whole study
-    character(len=*), parameter :: names(*) = [character(len=12) :: 'program', 'version', 'revision', 'compiler', 'libraries', &
-                                               'created', 'command_line', 'data_file', 'data']
-    character(len=:), allocatable :: text
-    integer :: i
-
-    do i = 1, size(names)
-      call read_text(from, 'provenance/'//trim(names(i)), text)
-      call to%put('provenance/'//trim(names(i)), text, 'of the first part')
-    end do
-    if (allocated(from%failure)) call to%fail("the origin in '"//from%path//"' cannot be read")
-  end subroutine copy_provenance
 
   !> Gather runs that follow each other from the files; not made where none has them. Fail with exit_file where two
   !> files have different numbers for one run.

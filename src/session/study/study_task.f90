@@ -20,7 +20,7 @@ module mech9_study_task
   use mech9_study_columns, only: refuse_varied_times
   use mech9_study_plots, only: study_plots_type
   use mech9_user_calls, only: calls_user_procedures
-  use mech9_study_processes, only: study_processes_type
+  use mech9_processes, only: processes_type
   use mech9_study_threads, only: threads_of_machine, has_threads
   use mech9_study_propagation, only: propagation_type, propagate
   use mech9_section_results, only: check_section_plots, write_section_files, print_section
@@ -44,7 +44,7 @@ contains
     type(model_type), intent(in) :: model                   !< the model with the values of the data file
     type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
     logical, intent(out) :: reported                        !< a report was asked for, and it is written
-    type(study_processes_type), intent(inout) :: processes  !< those that make the runs together
+    type(processes_type), intent(inout) :: processes  !< those that make the runs together
     type(quantity_record_type) :: quantities
     type(study_results_type), target :: results
     type(study_plots_type) :: plots
@@ -183,7 +183,7 @@ contains
     type(study_plots_type), intent(inout) :: plots          !< the plots that are requested
     type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
     logical, intent(inout) :: reported                      !< the report is written
-    type(study_processes_type), intent(in) :: processes     !< those that make the runs together
+    type(processes_type), intent(in) :: processes     !< those that make the runs together
     type(study_runs_type) :: runs
     type(propagation_type), allocatable :: propagation(:)
     type(signal_interruption_type), target :: interruption

@@ -20,15 +20,32 @@ module mech9_optimum_results
   use mech9_study_definition, only: define_study
   use mech9_synthesis, only: synthesis_type
   use mech9_starts, only: starts_type
-  use mech9_starts_file, only: read_starts
+  use mech9_starts_file, only: starts_layout_type, find_layout, read_starts
   use mech9_optimum_group, only: write_optima
   use mech9_design_text, only: text_of_design
   use mech9_optimum_words, only: history_of_design
   implicit none
   private
-  public :: open_starts, write_results, table_of
+  public :: open_results, write_results, table_of
 
 contains
+
+  !> Open the files of a search, before it begins.
+  subroutine open_results(options, document, model, synthesis, starts, table, err)
+    type(command_line_type), intent(in) :: options          !< the command line
+    type(document_type), intent(in) :: document             !< the data file as groups and items, with the changes by --set
+    type(model_type), intent(in) :: model                   !< the model
+    type(synthesis_type), intent(in) :: synthesis           !< prepared
+    type(starts_type), intent(inout) :: starts              !< gets room, and the open file
+    type(table_type), intent(inout) :: table                !< is open, if one is requested
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    type(error_type), allocatable :: at_close
+
+    call open_starts(options, document, model, synthesis, starts, err)
+    if (allocated(err) .or. table_of(options, model) == '') return
+    call open_table(table_of(options, model), model, table, err)
+    if (allocated(err)) call starts%file%close(at_close)
+  end subroutine open_results
 
   !> Make room for all starts, read those that were made before, and open the HDF5 file, where one is requested. A file
   !> that is continued is written anew, with all places and with the starts that it has. Until that is done it stays as
@@ -42,15 +59,18 @@ contains
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     type(result_paths_type) :: paths
     type(error_type), allocatable :: at_close
+    type(starts_layout_type) :: layout
     character(len=:), allocatable :: definition
 
     allocate (starts%made(model%request%optimum%starts))
+    starts%part = options%part()
     call find_result_paths(options, model%request%output, paths)
     if (paths%hdf5 == '') return
     call define_study(model%program, document, definition, err)
-    if (.not. allocated(err) .and. options%has('continue')) &
-      call read_starts(paths%hdf5, model, synthesis, definition, starts%made, err)
-    if (.not. allocated(err)) call starts%file%create(paths%hdf5, model, synthesis, definition, .false., err)
+    if (allocated(err)) return
+    call find_layout(model, synthesis, definition, layout)
+    if (options%has('continue')) call read_starts(paths%hdf5, layout, starts%made, err)
+    if (.not. allocated(err)) call starts%file%create(paths%hdf5, model, layout, .false., err)
     if (allocated(err)) return
     call write_provenance(starts%file%file, options, model, document%source%text)
     call write_made(starts)
@@ -79,13 +99,14 @@ contains
     type(starts_type), intent(inout) :: starts              !< with the open file, which is closed
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     type(error_type), allocatable :: at_close
-    character(len=:), allocatable :: path, created, definition
+    type(starts_layout_type) :: layout
+    character(len=:), allocatable :: path, created
 
     path = starts%file%file%path
+    layout = starts%file%layout
     call read_text(starts%file%file, 'provenance/created', created)
     call starts%file%close(err)
-    if (.not. allocated(err)) call define_study(model%program, document, definition, err)
-    if (.not. allocated(err)) call starts%file%create(path, model, synthesis, definition, .true., err)
+    if (.not. allocated(err)) call starts%file%create(path, model, layout, .true., err)
     if (allocated(err)) return
     call write_provenance(starts%file%file, options, model, document%source%text, created)
     call write_made(starts)
@@ -107,18 +128,19 @@ contains
   end function table_of
 
   !> Write the table and the HDF5 data of the distinct designs, and the data file of the best one.
-  subroutine write_results(options, document, model, synthesis, starts, diagnostics)
+  subroutine write_results(options, document, model, synthesis, starts, table, diagnostics)
     type(command_line_type), intent(in) :: options          !< the command line
     type(document_type), intent(in) :: document             !< the data file
     type(model_type), intent(in) :: model                   !< the model
     type(synthesis_type), intent(in) :: synthesis           !< with its optima, best first
     type(starts_type), intent(inout) :: starts              !< with the open file, which is closed
+    type(table_type), intent(inout) :: table                !< the open table, which is closed
     type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
     character(len=:), allocatable :: path, text
     type(error_type), allocatable :: err
 
     path = table_of(options, model)
-    if (path /= '') call write_table(path, model, synthesis, err)
+    if (path /= '') call write_table(table, model, synthesis, err)
     call tell(err, 'table', path)
     path = ''
     if (starts%file%is_open()) path = starts%file%file%path
@@ -132,12 +154,13 @@ contains
   contains
     !> Tell where a result is, or add the error.
     subroutine tell(failure, name, place)
-      type(error_type), allocatable, intent(in) :: failure  !< allocated if it could not be written
-      character(len=*), intent(in) :: name                  !< of the result
-      character(len=*), intent(in) :: place                 !< its path; empty where there is none
+      type(error_type), allocatable, intent(inout) :: failure   !< allocated if it could not be written; not on return
+      character(len=*), intent(in) :: name                      !< of the result
+      character(len=*), intent(in) :: place                     !< its path; empty where there is none
 
       if (allocated(failure)) then
         call diagnostics%add_error(failure)
+        deallocate (failure)
       else if (place /= '' .and. place /= standard_output_path .and. .not. options%has('quiet')) then
         write (error_unit, '(3a)') name, ': ', place
       end if
@@ -160,27 +183,35 @@ contains
     call text_of_design(document, designed, synthesis%values_of(1), synthesis%optima(1)%q, history, text)
   end subroutine text_of_best
 
-  !> Write a row for each distinct design, best first.
-  subroutine write_table(path, model, synthesis, err)
+  !> Open the table of the distinct designs.
+  subroutine open_table(path, model, table, err)
     character(len=*), intent(in) :: path                    !< of the table; '-' is standard output
     type(model_type), intent(in) :: model                   !< the model
-    type(synthesis_type), intent(in) :: synthesis           !< with its optima, best first
+    type(table_type), intent(inout) :: table                !< the table
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    type(error_type), allocatable :: at_close
     type(columns_type) :: columns
-    type(table_type) :: table
-    real(wp) :: row(size(model%parameters) + 2)
-    integer :: i, n
+    integer :: i
 
-    n = size(model%parameters)
     allocate (columns%names(0), columns%units(0), columns%long_names(0))
     call columns%append('value', '')
-    do i = 1, n
+    do i = 1, size(model%parameters)
       call columns%append(model%parameters(i)%name, trim(unit_of_parameter(model%mechanism, model%parameters(i))))
     end do
     call columns%append('starts', '')
     call table%open(path, heading_of(model%mechanism%title, columns), name_and_version(model%program), err)
-    if (allocated(err)) return
+  end subroutine open_table
+
+  !> Write a row for each distinct design, best first, and close the table.
+  subroutine write_table(table, model, synthesis, err)
+    type(table_type), intent(inout) :: table                !< the open table
+    type(model_type), intent(in) :: model                   !< the model
+    type(synthesis_type), intent(in) :: synthesis           !< with its optima, best first
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    type(error_type), allocatable :: at_close
+    real(wp) :: row(size(model%parameters) + 2)
+    integer :: i, n
+
+    n = size(model%parameters)
     do i = 1, size(synthesis%optima)
       row(1) = synthesis%optima(i)%value
       row(2:n + 1) = synthesis%values_of(i)

@@ -3,7 +3,7 @@ module mech9_optimum_task
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_usage
-  use mech9_text, only: string_type
+  use mech9_text, only: string_type, to_text
   use mech9_clock, only: seconds
   use mech9_command_line, only: command_line_type
   use mech9_document, only: document_type
@@ -12,10 +12,12 @@ module mech9_optimum_task
   use mech9_variable_model, only: variable_model_type
   use mech9_user_calls, only: calls_user_procedures
   use mech9_study_threads, only: threads_of_machine
+  use mech9_processes, only: processes_type
   use mech9_search, only: optimum_search_type, check_request
   use mech9_signal_interruption, only: signal_interruption_type
+  use mech9_table, only: table_type
   use mech9_starts, only: starts_type
-  use mech9_optimum_results, only: open_starts, write_results, table_of
+  use mech9_optimum_results, only: open_results, write_results, table_of
   use mech9_optimum_pictures, only: optimum_pictures_type
   use mech9_optimum_words, only: print_differences, print_optimum, save_optimum_report
   implicit none
@@ -25,15 +27,17 @@ module mech9_optimum_task
 contains
 
   !> Carry out the search that a data file describes.
-  subroutine work_on_optimum(options, document, variable, model, diagnostics, reported)
+  subroutine work_on_optimum(options, document, variable, model, diagnostics, reported, processes)
     type(command_line_type), intent(in) :: options                  !< the command line
     type(document_type), intent(in) :: document                     !< the data file
     class(variable_model_type), intent(inout), target :: variable   !< the model as a function of its parameters
     type(model_type), intent(in) :: model                           !< the model with the values of the data file
     type(diagnostics_type), intent(inout) :: diagnostics            !< gets the errors
     logical, intent(out) :: reported                                !< a report was asked for, and it is written
+    type(processes_type), intent(inout) :: processes                !< those that make the starts together
     type(optimum_search_type), allocatable, target :: search
     type(starts_type) :: starts
+    type(table_type) :: table
     type(optimum_pictures_type) :: pictures
     type(signal_interruption_type) :: interruption
     type(error_type), allocatable :: err
@@ -44,23 +48,33 @@ contains
     clock = seconds()
     call check_request(model, err)
     if (.not. allocated(err)) call refuse_changed_design(options, err)
-    if (.not. allocated(err)) call pictures%open(options, model, err)
+    if (.not. allocated(err)) call refuse_empty_part(options, model, err)
+    if (.not. allocated(err) .and. processes%is_first) call pictures%open(options, model, err)
     if (.not. allocated(err)) then
       call interruption%words%start(model%program, 'no result of a run of the search', 'it', options%has('quiet'), &
                                     with_progress=.false.)
       call search%prepare(variable, model, interruption, err)
     end if
-    if (.not. allocated(err)) call open_starts(options, document, model, search%synthesis, starts, err)
+    call processes%agree(err)
+    if (.not. allocated(err)) then
+      if (processes%is_first) call open_results(options, document, model, search%synthesis, starts, table, err)
+      call processes%agree(err)
+    end if
+    if (.not. processes%is_first) then
+      reported = .true.
+      if (.not. allocated(err)) call search%follow(model)
+      return
+    end if
     if (allocated(err)) then
       call diagnostics%add_error(err)
       return
     end if
     if (.not. options%has('quiet')) call print_differences(error_unit, search%start, search%synthesis)
     call starts%begin_shown(model%program, options%has('quiet'))
-    call search%make(model, threads_of(options, model), starts, err)
+    call search%make(model, processes, threads_of(options, model), starts, err)
     if (.not. options%has('quiet')) call print_optimum(error_unit, model, search%synthesis, seconds() - clock)
     if (allocated(err)) call diagnostics%add_error(err)
-    call write_results(options, document, model, search%synthesis, starts, diagnostics)
+    call write_results(options, document, model, search%synthesis, starts, table, diagnostics)
     call pictures%draw(options, variable, search%synthesis, diagnostics)
     if (.not. options%has('report')) return
     call save_optimum_report(options%argument('report'), model, search%synthesis, table_of(options, model), diagnostics, err)
@@ -78,6 +92,19 @@ contains
     if (calls_user_procedures(model)) threads = 1
     threads = options%number('threads', threads)
   end function threads_of
+
+  !> Refuse a part that has no starts.
+  subroutine refuse_empty_part(options, model, err)
+    type(command_line_type), intent(in) :: options        !< the command line
+    type(model_type), intent(in) :: model                 !< the model
+    type(error_type), allocatable, intent(out) :: err     !< allocated if it has none
+    integer :: part(2)
+
+    part = options%part()
+    if (part(1) > model%request%optimum%starts) &
+      call raise(err, exit_usage, '--part '//options%argument('part')//' has no starts: the search has '// &
+                 to_text(model%request%optimum%starts)//'; give fewer parts, or more starts in &optimum')
+  end subroutine refuse_empty_part
 
   !> Refuse to write a data file that would not have the changes by --set.
   subroutine refuse_changed_design(options, err)

@@ -2,44 +2,46 @@
 !> with the count -1, until the start is made. A program that is killed at any moment thus leaves a file whose starts
 !> are either whole or not made.
 module mech9_starts_file
-  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use mech9_kinds, only: wp
-  use mech9_text, only: to_text
+  use mech9_text, only: string_type, to_text
   use mech9_error, only: error_type
   use mech9_model, only: model_type
   use mech9_hdf5_file, only: hdf5_file_type
   use mech9_column_sets, only: new_column_set
   use mech9_hdf5_series, only: hdf5_series_type
-  use mech9_hdf5_reading, only: open_existing, read_text, read_integer, has_data_set
+  use mech9_hdf5_reading, only: open_existing, read_text, read_texts, read_integer, has_data_set
+  use mech9_hdf5_copying, only: copy_data_sets, extents_of
   use mech9_structure_layout, only: write_coordinates
   use mech9_study_filling, only: fill_rows
   use mech9_study_definition, only: digest_of, tell_difference
   use mech9_design_search, only: found_design_type, most_assemblies
   use mech9_synthesis, only: synthesis_type
+  use mech9_start_rows, only: start_row_type, row_of_synthesis, not_made
   use mech9_search_starts, only: start_type
   implicit none
   private
-  public :: starts_file_type, read_starts
+  public :: starts_file_type, starts_layout_type, find_layout, read_starts
 
-  !> Extents of the designs of one start, and their places in its row. The row has for each design its value,
-  !> parameters, coordinates and times, one design behind the other, and their number at the end.
-  type :: layout_type
-    integer :: parameters = 0
-    integer :: coordinates = 0
-    integer :: targets = 0
-  contains
-    procedure :: width
-    procedure :: columns
-  end type layout_type
+  !> Names and extents of what the file of a search holds, from its model or from a file.
+  type :: starts_layout_type
+    character(len=:), allocatable :: definition    !< text that determines the search but for the number of starts
+    integer :: seed = 0                            !< of the starts
+    integer :: wanted = 0                          !< starts for which the file has places
+    type(string_type), allocatable :: names(:)     !< of the parameters that are varied
+    type(start_row_type) :: row                    !< the designs of a start
+  end type starts_layout_type
 
   type :: starts_file_type
     type(hdf5_file_type) :: file
     type(hdf5_series_type), private :: series
-    type(layout_type), private :: layout
+    type(starts_layout_type) :: layout
     real(wp), allocatable, private :: row(:)      !< of a start
     logical, private :: reported = .false.        !< whether the failure of the file was reported
   contains
     procedure :: create
+    procedure :: create_like
+    procedure :: open => open_file
+    procedure :: read_all
     procedure :: publish
     procedure :: is_open
     procedure :: write_start
@@ -47,107 +49,133 @@ module mech9_starts_file
     procedure :: tell
   end type starts_file_type
 
-  integer, parameter :: not_made = -1   !< count of the designs of a start that is not made yet
-
 contains
 
-  !> The numbers of one design.
-  pure integer function width(self)
-    class(layout_type), intent(in) :: self   !< the layout
+  !> Form the layout of a search.
+  subroutine find_layout(model, synthesis, definition, layout)
+    type(model_type), intent(in) :: model                 !< the model
+    type(synthesis_type), intent(in) :: synthesis         !< prepared
+    character(len=*), intent(in) :: definition            !< text that determines the search but for the number of starts
+    type(starts_layout_type), intent(out) :: layout       !< names and extents
+    integer :: i
 
-    width = 1 + self%parameters + self%coordinates + self%targets
-  end function width
-
-  !> The columns of some numbers of all designs.
-  pure function columns(self, before, n) result(list)
-    class(layout_type), intent(in) :: self   !< the layout
-    integer, intent(in) :: before            !< numbers of a design before these
-    integer, intent(in) :: n                 !< how many they are
-    integer :: list(n*most_assemblies)
-    integer :: i, k
-
-    list = [(((k - 1)*self%width() + before + i, i=1, n), k=1, most_assemblies)]
-  end function columns
-
-  !> The layout of the starts of a synthesis.
-  pure function layout_of(synthesis) result(layout)
-    type(synthesis_type), intent(in) :: synthesis   !< prepared
-    type(layout_type) :: layout
-
-    layout = layout_type(size(synthesis%space%varied), synthesis%space%plan%n_coordinates, size(synthesis%targets))
-  end function layout_of
+    layout%definition = definition
+    layout%seed = model%request%optimum%seed
+    layout%wanted = model%request%optimum%starts
+    layout%row = row_of_synthesis(synthesis)
+    allocate (layout%names(layout%row%parameters))
+    do i = 1, size(layout%names)
+      layout%names(i)%text = model%parameters(synthesis%space%varied(i))%name
+    end do
+  end subroutine find_layout
 
   !> Create the file with all its places. It gets its name with `publish`; a file of that name stays until then.
-  subroutine create(self, path, model, synthesis, definition, at_end, err)
+  subroutine create(self, path, model, layout, at_end, err)
     class(starts_file_type), intent(out) :: self        !< the file
     character(len=*), intent(in) :: path                !< of the file
     type(model_type), intent(in) :: model               !< the model
-    type(synthesis_type), intent(in) :: synthesis       !< prepared
-    character(len=*), intent(in) :: definition          !< text that determines the search but for the number of starts
+    type(starts_layout_type), intent(in) :: layout      !< of the search
     logical, intent(in) :: at_end                       !< the search is over
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
-    self%layout = layout_of(synthesis)
-    call self%file%create(path, err)
+    call begin_file(self, path, layout, err)
     if (allocated(err)) return
-    call begin_series(self%series, self%layout, model, synthesis, model%request%optimum%starts)
-    allocate (self%row(most_assemblies*self%layout%width() + 1), source=0.0_wp)
-    call self%series%create(self%file)
-    call write_scales(self%file, model, self%layout)
-    call self%series%attach(self%file)
-    call fill_rows(self%series, self%file, size(self%row), model%request%optimum%starts, not_made, at_end)
-    call self%file%put('optimum/definition', definition, 'text that determines the search but for the number of starts')
-    call self%file%put('optimum/digest', digest_of(definition), 'cyclic redundancy check of the definition')
-    call self%file%put('optimum/seed', model%request%optimum%seed, 'seed of the starts')
-    call self%file%put('optimum/wanted', model%request%optimum%starts, 'starts for which the file has places')
-    call self%tell(err)
-    if (allocated(err)) call self%file%close()
+    call write_coordinates(self%file, model)
+    call complete_file(self, at_end, err)
   end subroutine create
 
+  !> Create the file of a whole search with all its places, for starts that files of parts have.
+  subroutine create_like(self, path, part, wanted, err)
+    class(starts_file_type), intent(out) :: self        !< the file
+    character(len=*), intent(in) :: path                !< of the file
+    type(starts_file_type), intent(inout) :: part       !< the open file of a part
+    integer, intent(in) :: wanted                       !< starts of the whole search
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(starts_layout_type) :: layout
+
+    layout = part%layout
+    layout%wanted = wanted
+    call begin_file(self, path, layout, err)
+    if (allocated(err)) return
+    call copy_data_sets(part%file, self%file, [character(len=15) :: 'coordinate', 'coordinate_unit'])
+    call complete_file(self, .true., err)
+  end subroutine create_like
+
+  !> Begin a file with the data sets of its starts.
+  subroutine begin_file(self, path, layout, err)
+    class(starts_file_type), intent(inout) :: self      !< the file
+    character(len=*), intent(in) :: path                !< of the file
+    type(starts_layout_type), intent(in) :: layout      !< of the search
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+
+    self%layout = layout
+    call self%file%create(path, err)
+    if (allocated(err)) return
+    call begin_series(self%series, layout)
+    allocate (self%row(layout%row%length()), source=0.0_wp)
+    call self%series%create(self%file)
+  end subroutine begin_file
+
+  !> Write what the file has beside its starts and the scale of coordinates.
+  subroutine complete_file(self, at_end, err)
+    class(starts_file_type), intent(inout) :: self      !< the file, begun
+    logical, intent(in) :: at_end                       !< the search is over
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+
+    associate (layout => self%layout)
+      call write_scales(self%file, layout)
+      call self%series%attach(self%file)
+      call fill_rows(self%series, self%file, size(self%row), layout%wanted, not_made, at_end)
+      call self%file%put('optimum/definition', layout%definition, 'text that determines the search but for the number of starts')
+      call self%file%put('optimum/digest', digest_of(layout%definition), 'cyclic redundancy check of the definition')
+      call self%file%put('optimum/seed', layout%seed, 'seed of the starts')
+      call self%file%put('optimum/wanted', layout%wanted, 'starts for which the file has places')
+      call self%file%put('optimum/varied', layout%names, 'names of the parameters that are varied')
+      call self%file%make_scale('optimum/varied')
+    end associate
+    call self%tell(err)
+    if (allocated(err)) call self%file%close()
+  end subroutine complete_file
+
   !> Add the data sets of the starts; the number of designs is written last.
-  subroutine begin_series(series, layout, model, synthesis, starts)
+  subroutine begin_series(series, layout)
     type(hdf5_series_type), intent(inout) :: series     !< gets the data sets
-    type(layout_type), intent(in) :: layout             !< of a start
-    type(model_type), intent(in) :: model               !< the model
-    type(synthesis_type), intent(in) :: synthesis       !< prepared
-    integer, intent(in) :: starts                       !< how many there are
+    type(starts_layout_type), intent(in) :: layout      !< of the search
     character(len=11), parameter :: of_design(2) = [character(len=11) :: '/start', '/assembly']
-    integer :: i, n
-
-    n = most_assemblies*layout%width() + 1
-    call series%start_fixed(layout%parameters + 4, n, starts, .false.)
-    call series%add(new_column_set('starts/value', layout%columns(0, 1), [most_assemblies], &
-                                   'value of a design to which the start led', '', of_design))
-    do i = 1, layout%parameters
-      associate (name => model%parameters(synthesis%space%varied(i))%name)
-        call series%add(new_column_set('starts/parameters/'//name, layout%columns(i, 1), [most_assemblies], 'parameter '//name, &
-                                       '', of_design))
-      end associate
-    end do
-    call series%add(new_column_set('starts/coordinates', layout%columns(1 + layout%parameters, layout%coordinates), &
-                                   [layout%coordinates, most_assemblies], 'coordinates of its assembly at the start of the run', &
-                                   'rad,m', [of_design, '/coordinate']))
-    if (layout%targets > 0) &
-      call series%add(new_column_set('starts/times', layout%columns(1 + layout%parameters + layout%coordinates, layout%targets), &
-                                     [layout%targets, most_assemblies], 'times of its targets', 's', [of_design, '/target    ']))
-    call series%add(new_column_set('starts/found', [n], [integer ::], &
-                                   'number of designs to which the start led; -1: not made yet', '1', of_design(:1), whole=.true.))
-  end subroutine begin_series
-
-  !> Write the scales of the dimensions: start, assembly, coordinate, target.
-  subroutine write_scales(file, model, layout)
-    type(hdf5_file_type), intent(inout) :: file   !< the file
-    type(model_type), intent(in) :: model         !< the model
-    type(layout_type), intent(in) :: layout       !< of a start
     integer :: i
 
-    call file%put('start', [(i, i=1, model%request%optimum%starts)], 'number of the start')
+    associate (row => layout%row)
+      call series%start_fixed(row%parameters + 4, row%length(), layout%wanted, .false.)
+      call series%add(new_column_set('starts/value', row%columns(0, 1), [most_assemblies], &
+                                     'value of a design to which the start led', '', of_design))
+      do i = 1, row%parameters
+        call series%add(new_column_set('starts/parameters/'//layout%names(i)%text, row%columns(i, 1), [most_assemblies], &
+                                       'parameter '//layout%names(i)%text, '', of_design))
+      end do
+      call series%add(new_column_set('starts/coordinates', row%columns(1 + row%parameters, row%coordinates), &
+                                     [row%coordinates, most_assemblies], 'coordinates of its assembly at the start of the run', &
+                                     'rad,m', [of_design, '/coordinate']))
+      if (row%targets > 0) &
+        call series%add(new_column_set('starts/times', row%columns(1 + row%parameters + row%coordinates, row%targets), &
+                                       [row%targets, most_assemblies], 'times of its targets', 's', [of_design, '/target    ']))
+      call series%add(new_column_set('starts/found', [row%length()], [integer ::], &
+                                     'number of designs to which the start led; -1: not made yet', '1', of_design(:1), &
+                                     whole=.true.))
+    end associate
+  end subroutine begin_series
+
+  !> Write the scales of the dimensions: start, assembly, target.
+  subroutine write_scales(file, layout)
+    type(hdf5_file_type), intent(inout) :: file         !< the file
+    type(starts_layout_type), intent(in) :: layout      !< of the search
+    integer :: i
+
+    call file%put('start', [(i, i=1, layout%wanted)], 'number of the start')
     call file%make_scale('start')
     call file%put('assembly', [(i, i=1, most_assemblies)], 'number of the design among those to which one start led')
     call file%make_scale('assembly')
-    call write_coordinates(file, model)
-    if (layout%targets == 0) return
-    call file%put('target', [(i, i=1, layout%targets)], 'number of the target, in the order of objectives and files')
+    if (layout%row%targets == 0) return
+    call file%put('target', [(i, i=1, layout%row%targets)], 'number of the target, in the order of objectives and files')
     call file%make_scale('target')
   end subroutine write_scales
 
@@ -172,18 +200,9 @@ contains
     class(starts_file_type), intent(inout) :: self      !< the file
     integer, intent(in) :: number                       !< of the start, from 1
     type(found_design_type), intent(in) :: found(:)     !< designs to which it led
-    integer :: i, n, at
 
     if (.not. self%is_open()) return
-    n = 0
-    self%row = ieee_value(self%row, ieee_quiet_nan)
-    do i = 1, size(found)
-      if (.not. found(i)%found) cycle
-      at = n*self%layout%width()
-      self%row(at + 1:at + self%layout%width()) = [found(i)%value, found(i)%x, found(i)%q, found(i)%times]
-      n = n + 1
-    end do
-    self%row(size(self%row)) = n
+    call self%layout%row%pack(found, self%row)
     call self%series%write_row_at(self%file, number, self%row)
     call self%series%hand_over(self%file)
   end subroutine write_start
@@ -209,91 +228,98 @@ contains
     err = self%file%failure
   end subroutine tell
 
-  !> Read the starts of an existing file. Fail with exit_file where it is not the file of a search, is that of another
-  !> problem, or has too many starts.
-  subroutine read_starts(path, model, synthesis, definition, starts, err)
-    character(len=*), intent(in) :: path                    !< of the file
-    type(model_type), intent(in) :: model                   !< the model
-    type(synthesis_type), intent(in) :: synthesis           !< prepared
-    character(len=*), intent(in) :: definition              !< text that determines the search but for the number of starts
-    type(start_type), intent(inout) :: starts(:)            !< gets those that were made
-    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    type(hdf5_file_type) :: file
-    type(hdf5_series_type) :: series
-    integer :: wanted
+  !> Open the file of a search that is there, for reading. It is a failure of the file where it is none, or has another form.
+  subroutine open_file(self, path, err)
+    class(starts_file_type), intent(out) :: self        !< the file
+    character(len=*), intent(in) :: path                !< of the file
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
-    call open_existing(path, .false., file, err)
+    call open_existing(path, .false., self%file, err)
     if (allocated(err)) return
-    call judge_definition(file, definition, size(starts), wanted)
-    if (.not. allocated(file%failure)) then
-      call begin_series(series, layout_of(synthesis), model, synthesis, wanted)
-      call series%open(file)
-      call take_starts(file, series, layout_of(synthesis), starts(:wanted))
-      call series%close(file)
+    call read_layout(self%file, self%layout)
+    if (.not. allocated(self%file%failure)) then
+      call begin_series(self%series, self%layout)
+      call self%series%open(self%file)
     end if
-    call file%close()
-    if (allocated(file%failure)) err = file%failure
-  end subroutine read_starts
+    call self%tell(err)
+    if (allocated(err)) call self%file%close()
+  end subroutine open_file
 
-  !> Let the file fail where it is not one of this problem, or has more starts than are wanted.
-  subroutine judge_definition(file, definition, most, wanted)
-    type(hdf5_file_type), intent(inout) :: file             !< the open file
-    character(len=*), intent(in) :: definition              !< text that determines the search but for the number of starts
-    integer, intent(in) :: most                             !< starts that are wanted now
-    integer, intent(out) :: wanted                          !< starts for which the file has places
-    character(len=:), allocatable :: text, difference
+  !> Read names and extents of what the file of a search holds.
+  subroutine read_layout(file, layout)
+    type(hdf5_file_type), intent(inout) :: file         !< the open file
+    type(starts_layout_type), intent(out) :: layout     !< names and extents
+    integer, allocatable :: extents(:)
 
-    wanted = 0
     if (.not. has_data_set(file, 'optimum/definition')) then
       call file%fail('it is not the file of a search by --optimize')
       return
     end if
-    call read_text(file, 'optimum/definition', text)
-    call read_integer(file, 'optimum/wanted', wanted)
+    call read_text(file, 'optimum/definition', layout%definition)
+    call read_integer(file, 'optimum/seed', layout%seed)
+    call read_integer(file, 'optimum/wanted', layout%wanted)
+    call read_texts(file, 'optimum/varied', layout%names)
+    if (.not. allocated(file%failure) .and. layout%wanted < 1) call file%fail('its number of starts makes no sense')
     if (allocated(file%failure)) return
-    call tell_difference(text, definition, difference, 'there', 'here')
+    layout%row%parameters = size(layout%names)
+    call extents_of(file, 'coordinate', extents)
+    if (size(extents) == 1) layout%row%coordinates = extents(1)
+    if (.not. has_data_set(file, 'target')) return
+    call extents_of(file, 'target', extents)
+    if (size(extents) == 1) layout%row%targets = extents(1)
+  end subroutine read_layout
+
+  !> Read the starts of an existing file. Fail with exit_file where it is not the file of a search, is that of another
+  !> problem, or has too many starts.
+  subroutine read_starts(path, layout, starts, err)
+    character(len=*), intent(in) :: path                    !< of the file
+    type(starts_layout_type), intent(in) :: layout          !< of the search that is continued
+    type(start_type), intent(inout) :: starts(:)            !< gets those that were made
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    type(starts_file_type) :: there
+    type(error_type), allocatable :: at_close
+
+    call there%open(path, err)
+    if (allocated(err)) return
+    call judge_layout(there%file, there%layout, layout)
+    if (.not. allocated(there%file%failure)) call there%read_all(starts(:there%layout%wanted))
+    call there%tell(err)
+    call there%close(at_close)
+    if (.not. allocated(err)) call move_alloc(at_close, err)
+  end subroutine read_starts
+
+  !> Let the file fail where it is not one of this problem, or has more starts than are wanted.
+  subroutine judge_layout(file, there, here)
+    type(hdf5_file_type), intent(inout) :: file             !< the open file
+    type(starts_layout_type), intent(in) :: there           !< its layout
+    type(starts_layout_type), intent(in) :: here            !< of the search that is continued
+    character(len=:), allocatable :: difference
+
+    call tell_difference(there%definition, here%definition, difference, 'there', 'here')
     if (difference /= '') then
       call file%fail('it is of another search: '//difference//'; continue it with the data file, the files that '// &
                      'this names and the changes by --set that made it, or make a new one by --hdf5')
-    else if (wanted < 1) then
-      call file%fail('its number of starts makes no sense')
-    else if (wanted > most) then
-      call file%fail('it has '//to_text(wanted)//' starts, and the data file asks for '//to_text(most)// &
+    else if (there%wanted > here%wanted) then
+      call file%fail('it has '//to_text(there%wanted)//' starts, and the data file asks for '//to_text(here%wanted)// &
                      '; give at least as many by starts= in &optimum')
     end if
-  end subroutine judge_definition
+  end subroutine judge_layout
 
-  !> Take the starts that were made.
-  subroutine take_starts(file, series, layout, starts)
-    type(hdf5_file_type), intent(inout) :: file             !< the open file
-    type(hdf5_series_type), intent(in) :: series            !< its data sets
-    type(layout_type), intent(in) :: layout                 !< of a start
-    type(start_type), intent(inout) :: starts(:)            !< gets those that were made
-    real(wp) :: row(most_assemblies*layout%width() + 1, 1)
-    integer :: i, k, n, at
+  !> Read the starts that were made.
+  subroutine read_all(self, starts)
+    class(starts_file_type), intent(inout) :: self          !< the open file
+    type(start_type), intent(inout) :: starts(:)            !< gets them
+    real(wp) :: row(self%layout%row%length(), 1)
+    logical :: sound
+    integer :: i
 
     do i = 1, size(starts)
-      call series%read_rows(file, i, row)
-      if (allocated(file%failure)) return
-      n = nint(row(size(row), 1))
-      if (n == not_made) cycle
-      if (n < 0 .or. n > most_assemblies) then
-        call file%fail('the number of designs of start '//to_text(i)//' makes no sense')
-        return
-      end if
-      allocate (starts(i)%found(n))
-      do k = 1, n
-        at = (k - 1)*layout%width() + 1
-        associate (found => starts(i)%found(k))
-          found%found = .true.
-          found%value = row(at, 1)
-          found%x = row(at + 1:at + layout%parameters, 1)
-          at = at + layout%parameters
-          found%q = row(at + 1:at + layout%coordinates, 1)
-          at = at + layout%coordinates
-          found%times = row(at + 1:at + layout%targets, 1)
-        end associate
-      end do
+      call self%series%read_rows(self%file, i, row)
+      if (allocated(self%file%failure)) return
+      call self%layout%row%unpack(row(:, 1), starts(i)%found, sound)
+      if (sound) cycle
+      call self%file%fail('the number of designs of start '//to_text(i)//' makes no sense')
+      return
     end do
-  end subroutine take_starts
+  end subroutine read_all
 end module mech9_starts_file

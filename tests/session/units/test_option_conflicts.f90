@@ -96,7 +96,7 @@ contains
   subroutine runs_and_studies(tester)
     type(tester_type), intent(inout) :: tester   !< counts the checks
 
-    call refused(tester, 'part', '--part K/N is a part of --study')
+    call refused(tester, 'part', '--part K/N is a part of --study or --optimize')
     call refused(tester, 'threads', '--threads N is the number of threads of --study')
     call refused(tester, 'continue', '--continue FILE.h5 makes the runs of --study')
     call refused(tester, 'study continue hdf5', '--continue FILE.h5 writes to its own file')
@@ -118,7 +118,7 @@ contains
     call refused(tester, 'import', 'a data file is given beside --import')
     call refused(tester, 'merge merge table', 'a data file is given beside --merge')
     call refused_without_file('import table', '--import makes a data file and no run; leave --table out')
-    call refused_without_file('merge hdf5', '--merge joins the files of parts of a study; give two of them or more')
+    call refused_without_file('merge hdf5', '--merge joins the files of parts of a study or search; give two of them or more')
     call refused_without_file('merge merge', '--merge needs the file that it makes')
     call refused_without_file('merge merge hdf5 check', '--merge makes no run; leave --check out')
   contains

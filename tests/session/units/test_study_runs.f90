@@ -14,7 +14,7 @@ module test_study_runs
   use mech9_run_maker, only: run_maker_type, made_run_type
   use mech9_signal_interruption, only: signal_interruption_type
   use mech9_study_file, only: study_file_type
-  use mech9_study_merge, only: merge_studies
+  use mech9_part_merge, only: merge_parts
   use mech9_study_propagation, only: propagation_type, propagate
   use mech9_study_results, only: study_results_type
   use mech9_study_runs, only: study_runs_type, all_handed_out, wait_for_others
@@ -220,7 +220,7 @@ contains
     call second%finish(err)
     call tester%is_true(first%sums%done == 3 .and. second%sums%done == 3, 'three runs each')
     call options_of(tester, '--merge '//stem//'_1.h5 '//stem//'_2.h5 --hdf5 '//stem//'.h5 --quiet', options)
-    call merge_studies(options, code)
+    call merge_parts(options, code)
     call tester%is_true(code == exit_done, 'parts are merged')
     call file%open(stem//'.h5', .false., '', err)
     call tester%no_error(err, 'the merged file is opened')
@@ -233,7 +233,7 @@ contains
       call file%close(err)
     end if
     call options_of(tester, '--merge '//stem//'_1.h5 '//stem//'_2.h5 --hdf5 '//stem//'_2.h5 --quiet', options)
-    call merge_studies(options, code)
+    call merge_parts(options, code)
     call tester%is_true(code == exit_usage, 'a part is not written over')
     call remove_file(stem//'.h5')
     call remove_file(stem//'_1.h5')

@@ -22,7 +22,7 @@ module test_synthesis_work
   use mech9_search_starts, only: all_handed_out
   use mech9_starts, only: starts_type
   use mech9_search_starts, only: start_type
-  use mech9_starts_file, only: read_starts
+  use mech9_starts_file, only: starts_layout_type, find_layout, read_starts
   use mech9_state, only: state_type
   use mech9_synthesis, only: synthesis_type, new_synthesis
   use mech9_varied_document, only: varied_document_type, new_varied_document
@@ -91,12 +91,14 @@ contains
     type(varied_document_type), target :: varied
     type(synthesis_type) :: synthesis
     type(starts_type) :: starts
+    type(starts_layout_type) :: layout
     type(error_type), allocatable :: err
     integer :: i
 
     call prepare(tester, model, varied, synthesis)
     allocate (starts%made(3))
-    call starts%file%create(stem//'.h5', model, synthesis, 'a search', .false., err)
+    call find_layout(model, synthesis, 'a search', layout)
+    call starts%file%create(stem//'.h5', model, layout, .false., err)
     call tester%no_error(err, 'a file for starts')
     call starts%file%publish(err)
     call starts%begin_shown(kinematics, .true.)
@@ -125,10 +127,12 @@ contains
     type(synthesis_type), intent(in) :: synthesis      !< with its designs
     type(starts_type), intent(in) :: starts            !< all of them, made
     type(start_type) :: again(3), others(3)
+    type(starts_layout_type) :: layout
     type(error_type), allocatable :: err
     integer :: i, k
 
-    call read_starts(stem//'.h5', model, synthesis, 'a search', again, err)
+    call find_layout(model, synthesis, 'a search', layout)
+    call read_starts(stem//'.h5', layout, again, err)
     call tester%no_error(err, 'starts are read back')
     do i = 1, 3
       call tester%is_true(size(again(i)%found) == count(starts%made(i)%found%found), 'all designs of a start')
@@ -138,7 +142,8 @@ contains
         call near_vector(tester, again(i)%found(k)%q, starts%made(i)%found(k)%q, 0.0_wp, 'its position')
       end do
     end do
-    call read_starts(stem//'.h5', model, synthesis, 'another search', others, err)
+    layout%definition = 'another search'
+    call read_starts(stem//'.h5', layout, others, err)
     call has_message(tester, err, exit_file, "it is of another search: there 'a search', here 'another search'", 'another search')
     call remove_file(stem//'.h5')
   end subroutine read_back
