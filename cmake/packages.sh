@@ -7,7 +7,7 @@
 # a minimal system can have a compiler that cannot link; with make, parts of the library are optimised together side by side.
 packages_build="gfortran libc6-dev make cmake ninja-build liblapack-dev libsundials-dev libsundials-fortran-dev libedit-dev libhdf5-dev libexpat1-dev libnlopt-dev"
 packages_pictures="gnuplot-nox graphviz"
-packages_tests="python3 python3-pytest python3-numpy python3-h5py python3-xarray python3-h5netcdf python3-pandas hdf5-tools groff-base libopenmpi-dev openmpi-bin auto-07p"
+packages_tests="python3 python3-pytest python3-numpy python3-h5py python3-xarray python3-h5netcdf python3-pandas python3-distributed hdf5-tools groff-base libopenmpi-dev openmpi-bin auto-07p"
 packages_browser="chromium"
 packages_packages="libopenmpi-dev openmpi-bin dpkg-dev file"
 packages_trials="lintian debootstrap python3-venv"
