@@ -1,5 +1,6 @@
 !> Branches over a parameter in words: their special points, and why they end.
 module mech9_branch_words
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: to_text
@@ -67,7 +68,7 @@ contains
 
     text = ''
     if (found%period == 0) return
-    if (found%rows(found%period, row) > 0.0_wp) text = ', period '//to_text(found%rows(found%period, row), 10)//' s'
+    if (ieee_is_finite(found%rows(found%period, row))) text = ', period '//to_text(found%rows(found%period, row), 10)//' s'
   end function period
 
   !> Why a branch ends at both ends.

@@ -90,6 +90,17 @@ def test_van_der_pol(checks, mech9d, tmp_path):
     checks.true('begins at a Hopf point' in said and 'period 6.28318530' in said, 'what is told', said)
 
 
+def test_beside_rest(checks, mech9d, tmp_path):
+    """Positions of rest have no period in the table; their Hopf point is that at which the motions end."""
+    text = (SLIDER % (0.3, '0,0,0,-1', 0.2, -0.5, 0.3)).replace("&periodic", "&branch parameter='m', of='equilibrium' /\n&periodic")
+    rows, branches, _ = follow(mech9d, tmp_path, text, 'm')
+    checks.equal([branch['of'] for branch in branches], ['periodic', 'equilibrium'], 'both')
+    checks.true(np.isnan(rows['period'][rows['branch'] == 2]).all() and (rows['period'][rows['branch'] == 1] > 6).all(), 'periods', rows['period'])
+    points = [branch['special_points'][0] for branch in branches]
+    checks.equal([(point['kind'], point['period'] is None) for point in points], [('Hopf point', False), ('Hopf point', True)], 'Hopf points')
+    checks.near(points[0]['value'], points[1]['value'], 1e-10, 'they are one', scale=1)
+
+
 def test_fold(checks, mech9d, tmp_path):
     """x'' - (m + x'^2 - x'^4) x' + x = 0: large stable motions turn back at a fold, and small unstable ones end at m = 0. At the fold the
     derivative of the return map, exp of the integral of the divergence, is 1."""
