@@ -17,7 +17,7 @@ module mech9_dynamic_report
   use mech9_integrator, only: integration_statistics_type
   use mech9_simulation, only: coordinate_change_type
   use mech9_motion_event, only: motion_events_type
-  use mech9_event_words, only: event_sentence, with_impulses_in_units
+  use mech9_event_words, only: write_event_sentence, with_impulses_in_units
   use mech9_free_simulation, only: free_simulation_type
   use mech9_run_words, only: duration, each
   use mech9_energy_text, only: words_of_energy_change
@@ -95,6 +95,7 @@ contains
     integer, intent(in) :: unit                       !< Fortran unit to write to
     type(motion_events_type), intent(in) :: events    !< of the motion
     type(mechanism_type), intent(in) :: mechanism     !< the mechanism
+    character(len=:), allocatable :: sentence
     integer :: i
 
     do i = 1, events%count
@@ -102,7 +103,8 @@ contains
       if (i == events%count .and. i > printed_events + 1) &
         write (unit, '(a)') counted(i - printed_events - 1, 'more event')//'; the option --report writes all of them'
       associate (event => events%items(i))
-        write (unit, '(a)') 't = '//to_text(event%t, 8)//' s: '//event_sentence(event, mechanism)
+        call write_event_sentence(event, mechanism, sentence)
+        write (unit, '(a)') 't = '//to_text(event%t, 8)//' s: '//sentence
       end associate
     end do
   end subroutine print_events

@@ -8,7 +8,7 @@ module mech9_event_words
     event_slip, event_lift
   implicit none
   private
-  public :: event_sentence, event_sentences, with_impulses_in_units
+  public :: write_event_sentence, event_sentences, with_impulses_in_units
 
 contains
 
@@ -36,15 +36,15 @@ contains
 
     allocate (sentences(events%count))
     do i = 1, events%count
-      sentences(i)%text = event_sentence(events%items(i), mechanism)
+      call write_event_sentence(events%items(i), mechanism, sentences(i)%text)
     end do
   end subroutine event_sentences
 
-  !> The sentence about an event, such as "stop 1 (hip) is hit, impulse -1.579".
-  pure function event_sentence(event, mechanism) result(text)
-    type(motion_event_type), intent(in) :: event      !< the event, with its impulse in the unit that the sentence shows
-    type(mechanism_type), intent(in) :: mechanism     !< tells the names of coordinates
-    character(len=:), allocatable :: text
+  !> Write the sentence about an event, such as "stop 1 (hip) is hit, impulse -1.579".
+  pure subroutine write_event_sentence(event, mechanism, text)
+    type(motion_event_type), intent(in) :: event                !< the event, with its impulse in the unit that the sentence shows
+    type(mechanism_type), intent(in) :: mechanism               !< the names of coordinates
+    character(len=:), allocatable, intent(out) :: text          !< the sentence
 
     text = trim(event%group)//' '//to_text(event%number)
     call add_name(event, mechanism, text)
@@ -62,7 +62,7 @@ contains
     case default
       text = text//' opens'
     end select
-  end function event_sentence
+  end subroutine write_event_sentence
 
   !> Add the name of the coordinate of a stop or a friction, in brackets behind a blank, where it has one.
   pure subroutine add_name(event, mechanism, text)

@@ -68,7 +68,7 @@ contains
                         'elements of a film end')
     call tester%is_true(count_of('<animate', text) > 0 .and. index(text, 'dur="8s"') > 0, 'a film moves, for 8 s')
     call tester%is_true(index(text, 'NaN') == 0 .and. index(text, '***') == 0, 'all numbers are numbers')
-    call save_html_film(path, title, scene, film, projection, planar, '', err)
+    call save_html_film(path, title, scene, film, model%mechanism%names, projection, planar, '', err)
     call text_of_file(tester, path, text)
     call tester%is_true(index(text, '<!DOCTYPE html>') == 1 .and. index(text, '</html>') > 0, 'a page is whole')
     call tester%is_true(index(text, 'a <b>') == 0, 'its title has no markup')
