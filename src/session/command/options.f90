@@ -85,7 +85,7 @@ module mech9_options
     option_type('continue', needed_argument, 'FILE.h5', any_text, .false., both, &
                 'make what the HDF5 file of a study or search does not have yet'), &
     option_type('merge', needed_argument, 'FILE FILE ...', any_text, .false., both, &
-                'join the HDF5 files of parts of a study or search to one, that of --hdf5', unlimited_arguments), &
+                'join HDF5 files of parts of a study or search to that of --hdf5', unlimited_arguments), &
     option_type('optimize', no_argument, '', any_text, .false., both, &
                 'find the parameters with which the groups &objective are met best'), &
     option_type('dakota', needed_argument, 'PARAMS RESULTS', any_text, .false., both, &
