@@ -37,7 +37,7 @@ module mech9_section_search
     procedure :: cell
     procedure :: level
     procedure :: is_near
-    procedure, private :: nearest
+    procedure, private :: nearest_level
   end type levels_type
 
   !> The passing of a level.
@@ -80,17 +80,17 @@ contains
     class(levels_type), intent(in) :: self     !< the levels
     real(wp), intent(in) :: value              !< the value
 
-    is_near = abs(value - self%nearest(value)) <= self%round_off
+    is_near = abs(value - self%nearest_level(value)) <= self%round_off
   end function is_near
 
   !> The level nearest to a value.
-  pure real(wp) function nearest(self, value)
+  pure real(wp) function nearest_level(self, value) result(level)
     class(levels_type), intent(in) :: self     !< the levels
     real(wp), intent(in) :: value              !< the value
 
-    nearest = 0.0_wp
-    if (self%distance > 0.0_wp) nearest = self%distance*anint(value/self%distance)
-  end function nearest
+    level = 0.0_wp
+    if (self%distance > 0.0_wp) level = self%distance*anint(value/self%distance)
+  end function nearest_level
 
   !> The level between two neighbouring cells.
   pure real(wp) function level(self, one, other)
@@ -203,7 +203,7 @@ contains
     real(wp) :: height, nearest
 
     height = value - 0.25_wp*slope**2/curvature
-    nearest = levels%nearest(height)
+    nearest = levels%nearest_level(height)
     if (abs(height - nearest) > margin + 2.0_wp*abs(height - value) + levels%round_off .and. &
         (height - nearest)*(value - nearest) > 0.0_wp) return
     look%t = look%t - 0.5_wp*slope/curvature*h

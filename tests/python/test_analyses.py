@@ -6,6 +6,7 @@ import json
 import os
 import sys
 import threading
+import time
 
 import numpy as np
 import pytest
@@ -483,6 +484,7 @@ def test_pauses_change_nothing(mech9, monkeypatch):
     advance = _library.lib.simulation_advance
     monkeypatch.setattr(_library.lib, 'simulation_advance', lambda *arguments: calls.append(None) or advance(*arguments))
     monkeypatch.setattr(_library._watch, '_interval', 0.0005)
+    time.sleep(0.2)   # the thread that watches may still sleep as long as before
     for name, is_driven, end in (('library/four_bar.nml', True, 3000.0), ('heavy_top/heavy_top.nml', False, 30.0)):
         m = mech9.read(os.path.join(EXAMPLES, name))
         states, counts = [], []

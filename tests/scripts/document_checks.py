@@ -17,8 +17,8 @@ BLOCK = re.compile(r'^(?P<not_run><!-- not run: [^\n]* -->\n)?'
                    r'(?P<indent> *)```(?P<kind>\w*)\n(?P<text>.*?)^ *```$', re.M | re.S)
 LINK = re.compile(r'\[[^\]]*\]\((?!https?:)([^)#\s]*)(#[^)\s]*)?\)')
 PLACE = re.compile(r'`((?:src|tests|user_procs|cmake|examples|docs|bench)/[\w/.-]+)`(?:: ((?:`\w+`(?:, )?)+))?')
-# no command needs the sources of programs and tests, most of the files
-COPIED = ('cmake', 'docs', 'examples', 'user_procs')
+# no command needs the sources of programs and unit tests, most of the files
+COPIED = ('cmake', 'docs', 'examples', 'user_procs', 'tests/scripts')
 
 
 def blocks_of(text):

@@ -274,7 +274,7 @@ RANGE = "&limit kind='quantity', of='stroke', low=30 /\n"
     (GOOD + STROKE + RANGE.replace(', low=30', ''), "needs 'low', 'high' or both"),
     (GOOD + STROKE + RANGE.replace('stroke', 'force'), "there is no &quantity 'force'"),
     (GOOD.replace("of='q4'", "of='F1'") + STROKE, "quantity 'stroke' is of column 'F1', which is not recorded"),
-    (GOOD + STROKE + "&limit kind='crank', coordinate=3 /\n", 'must have a drive, and q3 has none'),
+    (GOOD + STROKE + "&limit kind='crank', coordinate=3 /\n", 'must have a drive, and coordinate 3 has none'),
     (GOOD + STROKE + "&limit kind='crank', coordinate=9 /\n", 'there is no coordinate 9; there are q1 to q4'),
     (GOOD + STROKE + "&limit kind='transmission', coordinate=1, at_least=40 /\n", 'there is no transmission angle at q1'),
     (GOOD + STROKE + "&limit kind='transmission', coordinate=3, at_least=91 /\n", 'a transmission angle is at most a right angle'),
