@@ -211,7 +211,7 @@ contains
 
   !> The rates of the state at the start of a motion, in units of the curve over the angle of the period, without those of cyclic coordinates
   !> that do not come back.
-  function flow(self)
+  pure function flow(self)
     class(periodic_curve_type), intent(in) :: self        !< the curve, evaluated
     real(wp) :: flow(self%states)
     integer :: n
