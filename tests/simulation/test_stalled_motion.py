@@ -24,7 +24,7 @@ STUCK = """&mechanism angle_unit='deg' /
 &initial coordinate=1, position=0.1, velocity=0 /
 &initial coordinate=2, position=20, velocity=0 /
 &time end=0.33, intervals=33 /
-&solver method='prince-dormand' /
+&solver method='prince-dormand', maximum_steps=1000000000 /
 """
 # rods of a free delta robot whose angles are loaded in gimbal lock: stiffness at 0, so that the motion comes to the lock itself
 LOADS = {
