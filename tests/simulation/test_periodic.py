@@ -169,6 +169,19 @@ def test_a_free_pendulum(checks, mech9d, tmp_path):
     checks.true(found['stability'] == 'neutral' and 'family of motions' in said, 'neither stable nor unstable', said)
 
 
+def test_a_crank_in_a_closed_chain_comes_back_by_whole_turns(checks, mech9d, tmp_path):
+    """Gravity along its axis and a torque that falls with its speed leave the angle of a crank out of all forces. Its chain does not: the
+    period is one turn. In it the torque does no work."""
+    torque, damping = 1.0, 0.1
+    text = '&structure cq=1 /\n' + HEAVY_ROCKER.replace('0,-9.81,0', '0,0,-9.81') + '&initial coordinate=1, position=0.5, velocity=10 /\n'
+    text += f"&load kind='coordinate', coordinate=1, force={torque!r}, damping={damping!r} /\n&periodic period=0.6 /\n" + TIGHT
+    found, table, _ = go(mech9d, tmp_path, text + '&time end=1, intervals=400 /\n')
+    checks.true('advance' not in found, 'no coordinate goes on by any amount', found.get('advance'))
+    checks.equal(found['turns'][0], 1, 'one turn')
+    # the trapezoidal rule of a periodic function
+    checks.near(damping * np.mean(table['dq1'][:-1]**2) * found['period'], torque * 2 * np.pi, 1e-9, 'the work of damper and torque')
+
+
 def test_van_der_pol(checks, mech9d, tmp_path):
     """The limit cycle for mu = 1 from far away: its period, and the multiplier exp(integral of the divergence)."""
     text = SLIDER.replace('0.3, velocity=0.4', '0.5') + "&load kind='coordinate', coordinate=1, stiffness=1 /\n"
