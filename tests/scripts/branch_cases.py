@@ -1,4 +1,7 @@
-"""Mechanisms that several tests of branches and of equations of motion share, as parts of data files."""
+"""Mechanisms that several tests of branches and of equations of motion share, as parts of data files; the runs of branches of periodic motions."""
+import json
+
+from mech9_cases import read_table, run
 
 # half of a von Mises truss as a closed chain, in mm and degrees: a bar from (-800, 0) that slides along itself against a spring, and a slider
 # of 1 kg on y; the parameter, the load, is load(2).force(2), downwards
@@ -49,3 +52,14 @@ SLIDERS = """&structure cq=1,2 /
 &load kind='coordinate', coordinate=2, stiffness=0.5, damping=0.1 /
 &load kind='coordinate', coordinate=1, force=1, law='harmonic', amplitude=1, angular_frequency=1.4 /
 """
+
+
+def follow(program, folder, text, name, code=0):
+    """Table, branches in the report, and standard error of --branch."""
+    path, report, table = folder / 'follow.nml', folder / 'follow.json', folder / 'follow.dat'
+    path.write_text(text, encoding='utf-8')
+    done = run(program, path, '--branch', name, '--table', table, '--report', report)
+    assert done.returncode == code, done.stderr
+    if code:
+        return None, None, done.stderr
+    return read_table(table.read_text()), json.loads(report.read_text())['branches'], done.stderr

@@ -91,3 +91,16 @@ def is_optimal(checks, slope, walls, why, tolerance):
     rest = slope - np.transpose(walls) @ multipliers
     checks.true(np.linalg.norm(rest) <= tolerance*np.linalg.norm(slope), f'{why}: the slope is one of the limits', f'{rest} of {slope}')
     checks.true(np.all(multipliers > -tolerance*np.linalg.norm(slope)), f'{why}: the multipliers are not negative', str(multipliers))
+
+
+def contents_of(path):
+    """All data sets but those of the origin in the HDF5 file of a search, as bytes."""
+    import h5py
+    contents = {}
+    with h5py.File(path) as file:
+        def take(name, item):
+            if isinstance(item, h5py.Dataset) and not name.startswith('provenance/'):
+                contents[name] = (item.shape, b'\0'.join(item[...].flat) if item.dtype.kind == 'O' and item.shape
+                                  else item[()] if item.dtype.kind == 'O' else item[...].tobytes())
+        file.visititems(take)
+    return contents

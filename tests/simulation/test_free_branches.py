@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import branch_cases
-from mech9_cases import read_table, run
+from branch_cases import follow
+from mech9_cases import run
 
 SLIDER = """&structure cq=1 /
 &pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
@@ -20,17 +21,6 @@ SLIDER = """&structure cq=1 /
 &periodic period=6.5 /
 &time end=1 /
 """
-
-
-def follow(program, folder, text, name, code=0):
-    """Table, branches in the report, and standard error of --branch."""
-    path, report, table = folder / 'follow.nml', folder / 'follow.json', folder / 'follow.dat'
-    path.write_text(text, encoding='utf-8')
-    done = run(program, path, '--branch', name, '--table', table, '--report', report)
-    assert done.returncode == code, done.stderr
-    if code:
-        return None, None, done.stderr
-    return read_table(table.read_text()), json.loads(report.read_text())['branches'], done.stderr
 
 
 def shoot(rates, divergence, x, period, fixed=None, steps=600):

@@ -1,12 +1,11 @@
 """Branches of periodic motions over a parameter: closed forms of a linear oscillator, the boundary of Kapitza's pendulum, symmetry breaking
 and period doubling of the driven pendulum, against independent integrations; refusals."""
-import json
 
 import numpy as np
 import pytest
 
 import branch_cases
-from mech9_cases import read_table, run
+from branch_cases import follow
 
 OSCILLATOR = """&structure cq=1 /
 &pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
@@ -38,17 +37,6 @@ KAPITZA = f"""&structure cq=1,2 /
 &branch parameter='W', of='periodic' /
 &time end=1 /
 """
-
-
-def follow(program, folder, text, name, code=0):
-    """Table, branches in the report, and standard error of --branch."""
-    path, report, table = folder / 'follow.nml', folder / 'follow.json', folder / 'follow.dat'
-    path.write_text(text, encoding='utf-8')
-    done = run(program, path, '--branch', name, '--table', table, '--report', report)
-    assert done.returncode == code, done.stderr
-    if code:
-        return None, None, done.stderr
-    return read_table(table.read_text()), json.loads(report.read_text())['branches'], done.stderr
 
 
 def test_resonance(checks, mech9d, tmp_path):

@@ -13,6 +13,7 @@ import pytest
 
 from mech9_cases import PATIENCE, TREE, run, text_of
 from mpi_processes import ENVIRONMENT, mpi_of
+from synthesis_cases import contents_of
 
 h5py = pytest.importorskip('h5py', reason='h5py is not installed (Debian: python3-h5py)')
 
@@ -65,17 +66,6 @@ def cases(checks, tmp_path, mech9k):
     return Cases(checks, tmp_path, mech9k)
 
 
-def numbers_of(path):
-    """All data sets but those of the origin, as bytes."""
-    numbers = {}
-    with h5py.File(path) as file:
-        def take(name, item):
-            if isinstance(item, h5py.Dataset) and not name.startswith('provenance/'):
-                numbers[name] = item[()].tobytes() if item.dtype.kind != 'O' else [str(text) for text in np.atleast_1d(item[()])]
-        file.visititems(take)
-    return numbers
-
-
 def test_joined_parts_have_the_bits_of_one_search(cases):
     check = cases.checks
     cases.search('--hdf5', 'whole.h5', '--table', 'whole.dat')
@@ -90,7 +80,7 @@ def test_joined_parts_have_the_bits_of_one_search(cases):
     check.true('7 starts of 7 from 3 files' in told and '3 starts stood in more than one file' in told, 'starts are joined once', told)
     cases.search('--continue', 'joined.h5', '--table', 'joined.dat')
     check.equal(text_of(cases.path('joined.dat')), text_of(cases.path('whole.dat')), 'the same table')
-    check.true(numbers_of(cases.path('joined.h5')) == numbers_of(cases.path('whole.h5')), 'the same bits in the file')
+    check.true(contents_of(cases.path('joined.h5')) == contents_of(cases.path('whole.h5')), 'the same bits in the file')
     cases.search('--continue', 'some.h5', '--table', 'some.dat')
     check.equal(text_of(cases.path('some.dat')), text_of(cases.path('whole.dat')), 'missing starts are made: the same table')
 
@@ -130,7 +120,7 @@ def test_several_processes_find_the_bits_of_one(cases, build, name):
         done = cases.processes(n, build.program(f'{name}-mpi'), cases.data, '--optimize', '--hdf5', 'team.h5', '--table', 'team.dat')
         check.true(done.returncode == DONE and done.stderr.count('7 starts: ') == 1, f'{n} processes go through, and say so once', done.stderr)
         check.equal(text_of(cases.path('team.dat')), text_of(cases.path('whole.dat')), f'{n} processes write the same table')
-        check.true(numbers_of(cases.path('team.h5')) == numbers_of(cases.path('whole.h5')), f'{n} processes write the same bits')
+        check.true(contents_of(cases.path('team.h5')) == contents_of(cases.path('whole.h5')), f'{n} processes write the same bits')
     done = cases.processes(2, build.program(f'{name}-mpi'), cases.data, '--optimize', '--table', 'none/table.dat')
     check.true(done.returncode == FILE and done.stderr.count('none/table.dat') == 1, 'a mistake of the first one ends all, and is told once', done.stderr)
 
@@ -152,7 +142,7 @@ def test_a_killed_process_ends_all_and_loses_no_start(cases, build):
     check.true(0 < made < 40, 'the kill comes in the middle', made)
     cases.search('--continue', 'cut.h5', '--threads', '2')
     cases.search('--hdf5', 'whole.h5')
-    check.true(numbers_of(cases.path('cut.h5')) == numbers_of(cases.path('whole.h5')), 'one process continues to the same bits')
+    check.true(contents_of(cases.path('cut.h5')) == contents_of(cases.path('whole.h5')), 'one process continues to the same bits')
 
 
 def made_starts(path):

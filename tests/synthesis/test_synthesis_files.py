@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from mech9_cases import PATIENCE, TREE, read_table, run, text_of
+from synthesis_cases import contents_of
 
 h5py = pytest.importorskip('h5py', reason='h5py is not installed (Debian: python3-h5py)')
 
@@ -43,18 +44,6 @@ class Cases:
 @pytest.fixture
 def cases(checks, tmp_path, mech9k):
     return Cases(checks, tmp_path, mech9k)
-
-
-def contents_of(path):
-    """All data sets but those of the origin, as bytes."""
-    contents = {}
-    with h5py.File(path) as file:
-        def take(name, item):
-            if isinstance(item, h5py.Dataset) and not name.startswith('provenance/'):
-                contents[name] = (item.shape, b'\0'.join(item[...].flat) if item.dtype.kind == 'O' and item.shape
-                                  else item[()] if item.dtype.kind == 'O' else item[...].tobytes())
-        file.visititems(take)
-    return contents
 
 
 def test_data_sets_are_the_columns_of_the_table(cases):
