@@ -108,6 +108,20 @@ def test_parts_that_do_not_fit_are_refused(cases):
     check.true(not os.path.exists(cases.path('x.h5')), 'what is refused leaves no file')
 
 
+def test_a_full_disk_ends_a_merge(cases):
+    """A limit of the size of files takes the place of a full disk. Wherever it ends the writing, no file is left, and the parts stay."""
+    check = cases.checks
+    for k in (1, 2):
+        cases.search('--part', f'{k}/2', '--hdf5', f'part{k}.h5')
+    before = [contents_of(cases.path(f'part{k}.h5')) for k in (1, 2)]
+    for kilobytes in (1, 8, 64, 140):
+        done = run('sh', '-c', f'ulimit -f {2*kilobytes}; exec "$0" "$@"', cases.program, '--merge', 'part1.h5', 'part2.h5', '--hdf5', 'joined.h5',
+                   folder=cases.folder)
+        check.true(done.returncode == FILE and "cannot write to 'joined.h5'" in done.stderr, f'{kilobytes} kB: told', f'{done.returncode}: {done.stderr}')
+        check.true(not os.path.exists(cases.path('joined.h5')), f'{kilobytes} kB: no file is left')
+    check.true(before == [contents_of(cases.path(f'part{k}.h5')) for k in (1, 2)], 'the parts stay as they are')
+
+
 @pytest.mark.parametrize('name', ('mech9k', 'mech9d'))
 def test_several_processes_find_the_bits_of_one(cases, build, name):
     check = cases.checks

@@ -9,7 +9,7 @@ module mech9_structure_layout
   use mech9_data_set_store, only: data_set_store_type
   implicit none
   private
-  public :: write_structure, write_coordinates
+  public :: write_structure, write_coordinates, write_coordinates_in
 
   !> Most links with which the coincidence matrix is written; for more links it would be larger than the results.
   integer, parameter :: largest_matrix = 1000
@@ -26,11 +26,20 @@ contains
     do k = 1, size(units)
       units(k)%text = trim(unit_name(model%mechanism, k))
     end do
+    call write_coordinates_in(store, units)
+  end subroutine write_coordinates
+
+  !> Write the scale of the coordinates, and their units.
+  subroutine write_coordinates_in(store, units)
+    class(data_set_store_type), intent(inout) :: store     !< the open storage
+    type(string_type), intent(in) :: units(:)              !< (M) of the coordinates
+    integer :: k
+
     call store%put('coordinate', [(k, k=1, size(units))], 'number of the coordinate and of its pair')
     call store%make_scale('coordinate')
     call store%put('coordinate_unit', units, 'unit of each coordinate')
     call store%attach_scales('coordinate_unit', ['/coordinate'])
-  end subroutine write_coordinates
+  end subroutine write_coordinates_in
 
   !> Write the first and the second set of structural data.
   subroutine write_structure(store, model)

@@ -10,8 +10,8 @@ module mech9_starts_file
   use mech9_column_sets, only: new_column_set
   use mech9_hdf5_series, only: hdf5_series_type
   use mech9_hdf5_reading, only: open_existing, read_text, read_texts, read_integer, has_data_set
-  use mech9_hdf5_copying, only: copy_data_sets, extents_of
-  use mech9_structure_layout, only: write_coordinates
+  use mech9_hdf5_copying, only: extents_of
+  use mech9_structure_layout, only: write_coordinates, write_coordinates_in
   use mech9_study_filling, only: fill_rows
   use mech9_study_definition, only: digest_of, tell_difference
   use mech9_design_search, only: found_design_type, most_assemblies
@@ -92,12 +92,16 @@ contains
     integer, intent(in) :: wanted                       !< starts of the whole search
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(starts_layout_type) :: layout
+    type(string_type), allocatable :: units(:)
 
+    call read_texts(part%file, 'coordinate_unit', units)
+    call part%tell(err)
+    if (allocated(err)) return
     layout = part%layout
     layout%wanted = wanted
     call begin_file(self, path, layout, err)
     if (allocated(err)) return
-    call copy_data_sets(part%file, self%file, [character(len=15) :: 'coordinate', 'coordinate_unit'])
+    call write_coordinates_in(self%file, units)
     call complete_file(self, .true., err)
   end subroutine create_like
 
