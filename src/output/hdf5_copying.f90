@@ -6,7 +6,7 @@ module mech9_hdf5_copying
                   h5aclose_f, &
                   h5dvlen_reclaim_f, h5p_default_f, &
                   h5tclose_f, h5tis_variable_str_f, h5pcreate_f, h5pclose_f, h5pset_copy_object_f, h5p_object_copy_f, &
-                  h5o_copy_without_attr_flag_f, h5ocopy_f
+                  h5o_copy_without_attr_flag_f, h5ocopy_f, h5fflush_f, h5f_scope_local_f
   use h5ds, only: h5dsis_scale_f, h5dsis_attached_f
   use mech9_text, only: string_type
   use mech9_hdf5_file, only: hdf5_file_type
@@ -49,6 +49,10 @@ contains
     integer(hid_t) :: properties
     integer :: status
 
+    if (allocated(to%failure)) return
+    ! HDF5 1.10 crashes within the copy where what is waiting to be written does not fit on the disk
+    call h5fflush_f(to%id, h5f_scope_local_f, status)
+    call to%check(status)
     if (allocated(to%failure)) return
     call h5pcreate_f(h5p_object_copy_f, properties, status)
     call h5pset_copy_object_f(properties, h5o_copy_without_attr_flag_f, status)

@@ -335,5 +335,19 @@ def test_a_file_that_may_not_grow(cases, mech9k):
     cases.checks.true(done.returncode == FILE and 'File too large' in done.stderr and not os.path.exists(cases.path('large.h5')), 'a file that may not grow', done.stderr)
 
 
+def test_a_merged_file_that_may_not_grow(cases, mech9k):
+    """Limits of the size of files take the place of a full disk, wherever it ends the writing."""
+    check = cases.checks
+    path = cases.write(SLIDER_CRANK)
+    for k in (1, 2):
+        run(mech9k, path, '--study', '--quiet', '--part', f'{k}/2', '--hdf5', f'grown{k}.h5', folder=cases.folder)
+    size = sum(os.path.getsize(cases.path(f'grown{k}.h5')) for k in (1, 2))
+    for limit in (1000, 100000, 140000, size // 3):
+        done = run('sh', '-c', f'ulimit -f {max(1, limit // 512)}; exec "$0" "$@"', mech9k, '--merge', 'grown1.h5', 'grown2.h5', '--hdf5', 'merged.h5',
+                   folder=cases.folder)
+        check.true(done.returncode == FILE and 'File too large' in done.stderr and not os.path.exists(cases.path('merged.h5')), f'{limit} bytes',
+                   f'{done.returncode}: {done.stderr}')
+
+
 def test_a_table_alone_needs_no_columns(cases, mech9k):
     cases.checks.equal(cases.study(mech9k, SLIDER_CRANK + LATE, '--table', 'table.dat', why='a table'), '', 'nothing to be said')
