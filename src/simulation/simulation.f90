@@ -473,15 +473,23 @@ contains
     call add_place(err, place=model%mechanism%frictions(1)%place)
   end subroutine refuse_frictions
 
-  !> Fail where links may touch each other, with which derivatives by parameters are not known.
+  !> Fail where contacts have friction, or rigid ones stand beside frictions of pairs, with which derivatives by parameters are not known.
   subroutine refuse_contacts(model, err)
     type(model_type), intent(in) :: model               !< the model
-    type(error_type), allocatable, intent(out) :: err   !< allocated where there are contacts
+    type(error_type), allocatable, intent(out) :: err   !< allocated where there are such contacts
+    integer :: i
 
     if (.not. model%mechanism%has_contacts()) return
-    call raise(err, exit_data, failure_contact_sensitivity)
-    err%failure%number = 1
-    call add_place(err, place=model%mechanism%contacts(1)%place)
+    do i = 1, size(model%mechanism%contacts)
+      associate (contact => model%mechanism%contacts(i))
+        if (.not. (contact%has_friction() .or. (contact%is_rigid .and. model%mechanism%has_frictions()))) cycle
+        call raise(err, exit_data, failure_contact_sensitivity)
+        err%failure%number = contact%number
+        err%failure%limit = merge(1, 2, contact%has_friction())
+        call add_place(err, place=contact%place)
+        return
+      end associate
+    end do
   end subroutine refuse_contacts
 
   !> Let the present motion wait for its derivatives by all parameters, which are found for several positions at once.

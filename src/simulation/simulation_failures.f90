@@ -56,7 +56,7 @@ module mech9_simulation_failures
   !> A driven motion moves links into each other at a contact: number (of the contact), values (the gap at t_stop), t (of the passing), t_stop
   !> (of the position behind it).
   integer, parameter :: failure_contact_passed = 1020
-  !> Derivatives by parameters are not known with contacts of links: number (of the first one).
+  !> Derivatives by parameters are not known with contacts of links: number (of the first one), limit (1: it has friction, 2: pairs have).
   integer, parameter :: failure_contact_sensitivity = 1021
   integer, parameter :: last_simulation_failure = failure_contact_sensitivity
 end module mech9_simulation_failures

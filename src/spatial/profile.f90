@@ -36,6 +36,7 @@ module mech9_profile
     real(wp) :: normal(2) = 0.0_wp   !< of the profile at the foot, towards the free side
     real(wp) :: tangent(2) = 0.0_wp  !< at right angles to the normal, which turned to the right
     real(wp) :: turning = 0.0_wp     !< rate of the normal along the tangent per velocity of the point along it [1/m]
+    real(wp) :: turning_slope = 0.0_wp   !< derivative of `turning` by the way of the point along the tangent [1/m^2]
     integer :: part = 0              !< number of its part among those of all pieces; negative: minus the number of the corner or end
   end type foot_type
 
@@ -331,7 +332,7 @@ contains
     real(wp), intent(in) :: point(2)              !< in the plane of the profile [m]
     type(foot_type) :: foot
     real(wp), dimension(3) :: at, first, second, third
-    real(wp) :: speed, curvature, left
+    real(wp) :: speed, curvature, left, slope
 
     call curve%spline%evaluate(curve%piece(part), u, at, first, second, third)
     speed = norm2(first(:2))
@@ -340,7 +341,12 @@ contains
     foot%distance = dot_product(point - at(:2), foot%normal)
     curvature = dot_product(second(:2), foot%normal)/speed**2
     left = 1.0_wp - curvature*foot%distance
-    if (abs(left) > 0.0_wp) foot%turning = -curvature/left
+    if (.not. abs(left) > 0.0_wp) return
+    foot%turning = -curvature/left
+    ! the tangent has the direction of the curve where the free side is to its left
+    slope = self%side*(dot_product(third(:2), foot%normal)/speed**3 &
+                       - 3.0_wp*curvature*dot_product(first(:2), second(:2))/speed**3)
+    foot%turning_slope = -slope/left**3
   end function foot_on_piece
 
   !> A point of a piece in the plane.

@@ -3,7 +3,7 @@ module mech9_contact_words
   use mech9_length_words, only: length_in_words
   use mech9_text, only: to_text
   use mech9_failure, only: failure_type
-  use mech9_integration_failures, only: failure_contact_paradox
+  use mech9_integration_failures, only: failure_contact_paradox, failure_cornered_contact
   use mech9_event_failures, only: failure_contact_start, failure_contact_violated, failure_undecided_contact, &
     failure_contact_behind
   use mech9_simulation_failures, only: failure_contact_passed, failure_contact_sensitivity
@@ -45,8 +45,18 @@ contains
              ' s: at t = '//to_text(failure%t_stop, 10)//' s they would be '// &
              trim(length_in_words(failure, -failure%values(1, 1), 4))//' within each other. Change the drives, or move the surface'
     case (failure_contact_sensitivity)
-      text = 'derivatives by the parameters are not computed with contacts of links, as contact '//to_text(failure%number)// &
-             '. Leave out the contact, the parameters, or sensitivities and gradients'
+      if (failure%limit == 1) then
+        text = 'derivatives by the parameters are not computed with friction in contacts, as in contact '// &
+               to_text(failure%number)//'. Leave out friction= there, the parameters, or sensitivities and gradients'
+      else
+        text = 'derivatives by the parameters are not computed with frictions of pairs beside rigid contacts, as contact '// &
+               to_text(failure%number)//'. Make the contact compliant by stiffness=, leave out the frictions, the '// &
+               'parameters, or sensitivities and gradients'
+      end if
+    case (failure_cornered_contact)
+      text = 'derivatives by the parameters are not computed at t = '//to_text(failure%t, 10)//' s, where contact '// &
+             to_text(failure%number)//' stays closed on a path with corners, or at its end. Give a path without corners '// &
+             'on that side, end the run before, or leave out sensitivities and gradients'
     end select
   end subroutine explain_contact_failure
 end module mech9_contact_words

@@ -7,7 +7,7 @@ module mech9_sensitivity_words
   use mech9_force_gradient_failures, only: failure_jumping_force
   use mech9_integration_failures, only: failure_jump_sensitivity
   use mech9_event_failures, only: failure_event_sensitivity, cause_grazing, cause_several_impacts, cause_start_on_stop, &
-    cause_drive_jumps, cause_followed, cause_breaks_loose
+    cause_drive_jumps, cause_followed, cause_breaks_loose, cause_held_hit
   use mech9_simulation_failures, only: failure_angles_sensitivity, failure_friction_sensitivity
   use mech9_reaction_failures, only: failure_shared_force
   use mech9_block_names, only: chain_names
@@ -65,22 +65,28 @@ contains
   pure subroutine find_cause_at_event(failure, text)
     type(failure_type), intent(in) :: failure                     !< the failure
     character(len=:), allocatable, intent(out) :: text            !< the words
+    character(len=:), allocatable :: place
 
+    place = 'stop '//to_text(failure%number)
+    if (allocated(failure%name)) place = failure%name//' '//to_text(failure%number)
     select case (failure%limit)
     case (cause_grazing)
-      text = 'stop '//to_text(failure%number)//' is met without a rate'
+      text = place//' is met without a rate'
     case (cause_several_impacts)
-      text = 'stop '//to_text(failure%number)//' is hit together with another one'
+      text = place//' is hit together with another stop or contact'
     case (cause_start_on_stop)
-      text = 'the motion begins on stop '//to_text(failure%number)//', and parameters move it away or behind'
+      text = 'the motion begins on '//place//', and parameters move it away or behind'
+    case (cause_held_hit)
+      text = place//' is closed, and hit by drives whose rates jump'
     case (cause_drive_jumps)
       text = 'the rate of a drive jumps while a stop or friction holds a coordinate'
     case (cause_followed)
       text = 'columns may jump that quantities follow between outputs (give quantities of positions by mean, rms or integral, '// &
              'or take ''start'', ''end'' or ''at'')'
     case (cause_breaks_loose)
-      text = 'the pair of friction '//to_text(failure%number)//' begins to slip, and its coefficient at rest is above that of '// &
-             'sliding (give both the same value)'
+      text = 'the pair of friction '//to_text(failure%number)//' begins to slip, its coefficient at rest is above that of '// &
+             'sliding, and other pairs slip with it, or its bound is not met at a known rate (give both coefficients the same '// &
+             'value)'
     case default
       text = 'the pair of friction '//to_text(failure%number)//' is at rest without an acceleration, or at the start with a '// &
              'rate that parameters change'

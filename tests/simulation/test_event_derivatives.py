@@ -11,7 +11,7 @@ from math import log, sqrt
 import numpy as np
 import pytest
 
-from mech9_cases import read_table, run
+from event_derivative_cases import COLUMNS, FOUR_BAR, TIGHT, against_differences, go, kinds
 
 BOUNCING = """&structure cq=1 /
 &pair coordinate=1, links=1,2, kind='prismatic', axis=0,0,1 /
@@ -32,27 +32,6 @@ OSCILLATOR = """&structure cq=1 /
 &load kind='coordinate', coordinate=1, force=1, law='harmonic', amplitude=1, angular_frequency=2.5, phase=1.5707963267948966 /
 &stop coordinate=1, low=0, restitution=0.8 /
 &initial coordinate=1, position=0.5, velocity=0.1 /
-"""
-FOUR_BAR = """&structure cq=1 /
-&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
-&pair coordinate=2, links=2,3, kind='revolute', point=0.2,0,0, axis=0,0,1 /
-&pair coordinate=3, links=3,4, kind='revolute', point=0.7,0,0, axis=0,0,1, moving_point=1,0,0 /
-&pair coordinate=4, links=1,4, kind='revolute', point=0.6,0,0, axis=0,0,1 /
-&initial coordinate=1, position=0.5, velocity=1 /
-&initial coordinate=2, position=0.3 /
-&initial coordinate=3, position=1 /
-&initial coordinate=4, position=1.7 /
-&body link=2, mass=0.2, centre=0.1,0,0, inertia=0,0,0.0006666666666666667,0,0,0 /
-&body link=3, mass=0.5, centre=0.45,0,0, inertia=0,0,0.010416666666666667,0,0,0 /
-&body link=4, mass=2, centre=0.8,0,0, inertia=0,0,0.026666666666666667,0,0,0 /
-&gravity acceleration=0,-9.81,0 /
-&load kind='coordinate', coordinate=1, damping=0.05 /
-&stop coordinate=4, high=2.3, restitution=0.7 /
-&parameter name='v', sets='initial(1).velocity' /
-&parameter name='m', sets='body(3).mass' /
-&parameter name='l', sets='pair(3).point(1)' /
-&parameter name='e', sets='stop(1).restitution' /
-&parameter name='high', sets='stop(1).high' /
 """
 FIVE_BAR = """&structure cq=1,2 /
 &pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1, point=0,0,0 /
@@ -152,47 +131,16 @@ RUBBING_BARS = FOUR_BAR.replace('&parameter', '''&friction coordinate=1, dynamic
 &friction coordinate=3, dynamic=0.2, radius=0.02 /
 &friction coordinate=4, dynamic=0.2, radius=0.02 /
 &parameter''', 1)
-COLUMNS = '&output sensitivities=.true. /\n'
-TIGHT = '&solver relative_tolerance=1e-12, absolute_tolerance=1e-13 /\n'
-
-
-def go(program, folder, text, *words, end=1.0, intervals=1, code=0):
-    """Table, report and standard error of a run."""
-    path, table, report = folder / 'event.nml', folder / 'event.dat', folder / 'event.json'
-    path.write_text(f'{text}&time end={end!r}, intervals={intervals} /\n', encoding='utf-8')
-    done = run(program, path, '--table', table, '--report', report, *words)
-    assert done.returncode == code, done.stderr
-    return read_table(table.read_text()) if code == 0 else None, json.loads(report.read_text()), done.stderr
-
-
-def kinds(report):
-    return [(event['kind'], event['number']) for event in report['events']]
-
-
-def against_differences(checks, program, folder, text, columns, end, intervals, output=COLUMNS, step=1e-5, tol=2e-7):
-    """Derivatives of all columns by all parameters against differences of fourth order of runs in which the same events happen."""
-    table, report, _ = go(program, folder, text + output + TIGHT, end=end, intervals=intervals)
-    plain = re.sub('&parameter.*\n', '', text) + output.replace('sensitivities=.true.', 'sensitivities=.false.')
-    for name, target in re.findall(r"&parameter name='(\w+)', sets='([^']+)'", text):
-        near = {}
-        for i in (-2, -1, 1, 2):
-            value = number_of(text, target) + i * step
-            near[i], other, _ = go(program, folder, plain + TIGHT, '--set', f'{target}={value!r}', end=end, intervals=intervals)
-            checks.true(kinds(other)[:6] == kinds(report)[:6], 'the same events happen', name)
-        for column in columns:
-            slope = (8 * (near[1][column] - near[-1][column]) - near[2][column] + near[-2][column]) / (12 * step)
-            # tolerance: the error of motions, 1e-12 to 1e-11, over the step
-            checks.near(table[f'd({column})/d({name})'], slope, tol, f'{column} by {name}', scale=max(1.0, float(np.abs(slope).max())))
-    return report
-
-
-def number_of(text, target):
-    """A number of a data file by its name."""
-    group, number, name, place = re.match(r'(\w+)\((\d+)\)\.(\w+)(?:\((\d+)\))?', target).groups()
-    group = re.findall(rf'&{group}\s([^/]*)/', text)[int(number) - 1]
-    return float(re.search(rf'\b{name}=([-\d.,e+]+)', group).group(1).strip(',').split(',')[int(place or 1) - 1])
-
-
+#: A bearing that sticks, and breaks loose at a larger coefficient than that of sliding.
+LOOSE_BEARINGS = TWO_BEARINGS.replace('friction coordinate=2, dynamic=0.9', 'friction coordinate=2, static=1.1, dynamic=0.9') \
+    + "&parameter name='s', sets='friction(2).static' /\n&parameter name='d', sets='friction(2).dynamic' /\n"
+#: A four-bar whose crank rests in its bearing until a load that grows breaks it loose.
+LOOSE_BARS = re.sub('&stop.*\n|.*stop.*\n', '', FOUR_BAR) + '''&friction coordinate=1, dynamic=0.2, static=0.3, radius=0.1 /
+&load kind='coordinate', coordinate=1, force=8, law='harmonic', amplitude=1, angular_frequency=4 /
+&parameter name='s', sets='friction(1).static' /
+&parameter name='d', sets='friction(1).dynamic' /
+&parameter name='F', sets='load(2).force' /
+'''
 def bounce(end, h, e, g):
     """Height and rate of a body that bounces, and their derivatives by the height of its fall, the restitution and gravity."""
     t, u = sqrt(2 * h / g), sqrt(2 * h * g)
@@ -285,12 +233,14 @@ def test_a_dry_oscillator(checks, mech9d, tmp_path, end):
             checks.near(table[f'd({column})/d({name})'][-1], slope, 1e-9, f'{column} by {name}', scale=max(1.0, abs(slope)))
 
 
-@pytest.mark.parametrize('text, columns, end, found', ids=['belt', 'two bearings', 'cylindrical', 'four-bar', 'smooth'], argvalues=[
+@pytest.mark.parametrize('text, columns, end, found', ids=['belt', 'two bearings', 'cylindrical', 'four-bar', 'smooth', 'loose bearing', 'loose bar'], argvalues=[
     (BELT, ('q2', 'dq2'), 2.0, ('stick', 1)),
     (TWO_BEARINGS, ('q1', 'dq1', 'q2', 'dq2', 'R1.fx', 'R1.mz', 'R2.mz'), 1.6, ('stick', 2)),
     (SCREW, ('q1', 'dq1', 'q2', 'dq2', 'R1.fx'), 0.2, None),
     (RUBBING_BARS, ('q1', 'dq1', 'q4', 'dq4', 'R3.fx', 'R3.mz'), 0.5, ('impact', 1)),
-    (BELT.replace('dynamic=0.3', "dynamic=0.3, law='smooth', transition=0.1"), ('q2', 'dq2', 'ddq2'), 2.0, None)])
+    (BELT.replace('dynamic=0.3', "dynamic=0.3, law='smooth', transition=0.1"), ('q2', 'dq2', 'ddq2'), 2.0, None),
+    (LOOSE_BEARINGS, ('q1', 'dq1', 'q2', 'dq2', 'R1.fx', 'R2.mz'), 2.4, ('slip', 2)),
+    (LOOSE_BARS, ('q1', 'dq1', 'q4', 'dq4'), 1.5, ('slip', 1))])
 def test_frictions(checks, mech9d, tmp_path, text, columns, end, found):
     """Frictions by reactions that parameters change: a block that sticks to a belt and slips again; two bearings of which one sticks while
     the other slips; a pair that turns and slides; three bearings of a closed chain, with an impact; a smooth law."""
@@ -306,6 +256,50 @@ def test_exponents_with_friction(checks, mech9d, tmp_path):
     # tolerance: lengths change by less than a factor of e^3 within a period
     checks.near(report['exponents'][0], 0, 3 / 600, 'along the cycle', scale=1)
     checks.equal(report['exponents'][1], None, 'across it')
+
+
+def sticking_belt(end, s, d, m, k, v):
+    """Place of a block on a belt of the speed v against the frame, and its rate, with the coefficients s at rest and d in motion."""
+    w, g = cmath.sqrt(k / m), 9.81
+    centre, x, u, t = d * m * g / k, 0.1, -0.8 + v, 0
+    while True:
+        # the block slips backwards on the belt until it has its speed
+        def rate(h, x=x, u=u):
+            return -(x - centre) * w * cmath.sin(w * h) + u * cmath.cos(w * h) - v
+
+        ahead = next(i for i in range(3, 100000) if rate(i * 1e-4).real >= 0) * 1e-4
+        for _ in range(60):
+            ahead -= rate(ahead) / (-(x - centre) * w**2 * cmath.cos(w * ahead) - u * w * cmath.sin(w * ahead))
+        h = min(ahead, end - t, key=lambda value: complex(value).real)
+        place = centre + (x - centre) * cmath.cos(w * h) + u / w * cmath.sin(w * h)
+        if complex(end - t).real <= ahead.real:
+            return place, rate(h) + v
+        t, rest = t + ahead, (s * m * g / k - place) / v
+        if complex(end - t).real <= rest.real:
+            return place + v * (end - t), v
+        x, u, t = s * m * g / k, v, t + rest
+
+
+@pytest.mark.parametrize('end', [0.3, 0.8, 1.9, 3.4])
+def test_a_block_that_breaks_loose(checks, mech9d, tmp_path, end):
+    """A coefficient at rest above that of sliding: while it slips and sticks for the first time, and after it broke loose."""
+    text = BELT.replace('dynamic=0.3', 'dynamic=0.3, static=0.45') + "&parameter name='s', sets='friction(1).static' /\n" \
+        "&parameter name='v', sets='drive(1).coefficients(2)' /\n"
+    table, _, _ = go(mech9d, tmp_path, text + COLUMNS + TIGHT, end=end)
+    at = {'s': 0.45, 'd': 0.3, 'm': 1.0, 'k': 10.0, 'v': 0.5}
+    names = {'s': 's', 'd': 'mu', 'm': 'm', 'k': 'k', 'v': 'v'}
+    place, rate = sticking_belt(end, **at)
+    checks.near(table['q2'][-1] + 0.5 * end, complex(place).real, 1e-10, 'place', scale=1)
+    checks.near(table['dq2'][-1] + 0.5, complex(rate).real, 1e-10, 'rate', scale=1)
+    for key, name in names.items():
+        moved = sticking_belt(end, **{**at, key: at[key] + 1e-30j})
+        for column, value in zip(('q2', 'dq2'), moved):
+            slope = complex(value).imag / 1e-30
+            # the coordinate counts from the belt
+            if key == 'v':
+                slope -= end if column == 'q2' else 1
+            # tolerance: the rate at which the bound is met, by differences
+            checks.near(table[f'd({column})/d({name})'][-1], slope, 2e-9, f'{column} by {name}', scale=max(1.0, abs(slope)))
 
 
 def exponents(program, folder, text, count, end, settings):
@@ -347,7 +341,7 @@ def test_lost_directions(checks, mech9d, tmp_path):
 
 @pytest.mark.parametrize('change, words', [
     (('&parameter', "&pair coordinate=2, links=1,3, kind='prismatic', axis=0,0,1 /\n&body link=3, mass=1 /\n&stop coordinate=2, low=0 /\n"
-      '&initial coordinate=2, position=1 /\n&parameter'), 'stop 1 is hit together with another one'),
+      '&initial coordinate=2, position=1 /\n&parameter'), 'stop 1 is hit together with another stop or contact'),
     (('position=1 ', 'position=0 '), 'the motion begins on stop 1, and parameters move it away or behind'),
     (('&parameter', "&quantity name='v', of='dq1', take='rms' /\n&output gradients=.true. /\n&parameter"),
      'columns may jump that quantities follow between outputs')])

@@ -130,7 +130,7 @@ contains
     real(wp), allocatable :: values(:)
     integer :: i
 
-    known = .not. sets_any(parameter, [character(len=9) :: 'time'])
+    known = .not. (sets_any(parameter, [character(len=9) :: 'time']) .or. sets_scale(parameter))
     if (sets_any(parameter, [character(len=9) :: 'drive', 'user'])) then
       do i = 1, size(model%problem%drives)
         call model%problem%drives(i)%drive%constants(values)
@@ -160,6 +160,15 @@ contains
       sets = sets .or. any(groups == parameter%through(i)%group)
     end do
   end function sets_any
+
+  !> Whether a parameter sets the scale of the path of a contact, itself or by a formula in which it has a part.
+  pure logical function sets_scale(parameter) result(sets)
+    type(parameter_type), intent(in) :: parameter   !< the parameter
+
+    sets = any(parameter%targets%group == 'contact' .and. parameter%targets%item == 'scale')
+    if (allocated(parameter%through)) &
+      sets = sets .or. any(parameter%through%group == 'contact' .and. parameter%through%item == 'scale')
+  end function sets_scale
 
   !> The derivatives of all constants by one parameter.
   subroutine differentiate(variable, model, plan, number, change, round_off, err)

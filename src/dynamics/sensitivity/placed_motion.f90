@@ -27,6 +27,7 @@ contains
     end if
     if (allocated(present%pressed)) state%pressed = present%pressed
     if (allocated(present%friction)) state%friction = present%friction
+    if (allocated(present%contact_force)) state%contact_force = present%contact_force
     call place_all(plan, state, err)
     if (allocated(err)) return
     call spread_all_velocities(plan, state)

@@ -9,6 +9,7 @@ module mech9_varied_forces
   use mech9_error, only: error_type
   use mech9_rotation, only: turn, cross
   use mech9_motion_view, only: motion_view_type
+  use mech9_contact, only: contact_place_type
   use mech9_motion_change, only: motion_change_type, new_motion_change
   use mech9_force_sum, only: force_sum_type, new_force_sum
   use mech9_model, only: model_type
@@ -207,6 +208,7 @@ contains
       call show_change(p, twists, motion, self%loaded, self%view, self%change)
       call vary_loads(model, p, motion, self, err)
       if (allocated(err)) return
+      if (allocated(motion%contact)) call add_contacts(model, motion%contact(p, :), self)
       do i = 1, size(self%loaded)
         k = self%loaded(i)
         f = motion%plan%frame_of(k)
@@ -246,6 +248,28 @@ contains
       if (allocated(err)) return
     end do
   end subroutine vary_loads
+
+  !> Add the derivatives of the normal forces of rigid contacts, which their loads hold.
+  subroutine add_contacts(model, forces, self)
+    type(model_type), intent(in) :: model               !< the model
+    real(wp), intent(in) :: forces(:)                   !< (contacts) derivatives by one parameter [N]
+    type(varied_forces_type), intent(inout) :: self     !< with the motion as loads read it; its sums grow
+    type(contact_place_type) :: place
+    integer :: i, side
+
+    do i = 1, size(forces)
+      if (.not. abs(forces(i)) > 0.0_wp) cycle
+      associate (contact => model%mechanism%contacts(i), links => self%view%links, sum => self%sum_change)
+        place = contact%find_place(links(contact%links(1)), links(contact%links(2)))
+        do side = 1, 2
+          associate (k => contact%links(side), force => (3 - 2*side)*forces(i)*place%normal)
+            sum%force(:, k) = sum%force(:, k) + force
+            sum%torque(:, k) = sum%torque(:, k) + cross(place%at - links(k)%p, force)
+          end associate
+        end do
+      end associate
+    end do
+  end subroutine add_contacts
 
   !> The change of the motion by one parameter, as loads read it.
   subroutine show_change(p, twists, motion, loaded, view, change)

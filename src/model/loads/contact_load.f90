@@ -5,8 +5,10 @@ module mech9_contact_load
   use mech9_error, only: error_type
   use mech9_rotation, only: cross
   use mech9_motion_view, only: motion_view_type
+  use mech9_motion_change, only: motion_change_type, link_change_type
   use mech9_force_sum, only: force_sum_type
   use mech9_contact, only: contact_type, contact_place_type
+  use mech9_contact_change, only: contact_change_type, change_of_contact, numbers_of_contact, vary_normal_force
   use mech9_load, only: load_type
   implicit none
   private
@@ -20,6 +22,10 @@ module mech9_contact_load
     procedure :: mark_links
     procedure :: apply
     procedure :: potential
+    procedure :: vary
+    procedure :: numbers
+    procedure :: vary_by_numbers
+    procedure :: varied_potential
   end type contact_load_type
 
 contains
@@ -62,6 +68,81 @@ contains
     end associate
   end subroutine apply
 
+  !> Add the derivative of the force by a parameter on which the motion depends. The normal force of a rigid contact is held, but turns
+  !> with the normal. There is no friction.
+  subroutine vary(self, state, change, changes, err)
+    class(contact_load_type), intent(in) :: self        !< the load
+    type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
+    type(motion_change_type), intent(in) :: change      !< derivative of the motion by the parameter
+    type(force_sum_type), intent(inout) :: changes      !< derivatives of forces so far; those of the load are added
+    type(error_type), allocatable, intent(out) :: err   !< never allocated
+
+    associate (links => self%contact%links)
+      call add_change(self, state, change%links(links(1)), change%links(links(2)), [real(wp) ::], changes)
+    end associate
+  end subroutine vary
+
+  !> Its numbers.
+  pure subroutine numbers(self, values)
+    class(contact_load_type), intent(in) :: self      !< the load
+    real(wp), allocatable, intent(out) :: values(:)   !< the numbers
+
+    values = numbers_of_contact(self%contact)
+  end subroutine numbers
+
+  !> Add the derivative of the force by a parameter on which its numbers depend.
+  subroutine vary_by_numbers(self, change, factor, state, changes, err)
+    class(contact_load_type), intent(in) :: self        !< the load
+    real(wp), intent(in) :: change(:)                   !< derivatives of the numbers
+    real(wp), intent(in) :: factor                      !< 1, since it has no law
+    type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
+    type(force_sum_type), intent(inout) :: changes      !< derivatives of forces so far; those of the load are added
+    type(error_type), allocatable, intent(out) :: err   !< never allocated
+
+    call add_change(self, state, link_change_type(), link_change_type(), factor*change, changes)
+  end subroutine vary_by_numbers
+
+  !> Add the derivative of the force by a change of the motion of both links, or of the numbers. The line of the force goes through the
+  !> centre of the ball.
+  pure subroutine add_change(self, state, ball_change, surface_change, own, changes)
+    type(contact_load_type), intent(in) :: self             !< the load
+    type(motion_view_type), intent(in) :: state             !< present motion of links and coordinates
+    type(link_change_type), intent(in) :: ball_change       !< change of the motion of the ball's link
+    type(link_change_type), intent(in) :: surface_change    !< change of that of the surface's link
+    real(wp), intent(in) :: own(:)                          !< derivatives of the numbers; of size 0: all are zero
+    type(force_sum_type), intent(inout) :: changes          !< derivatives of forces so far; those of the load are added
+    type(contact_place_type) :: place
+    type(contact_change_type) :: varied
+    real(wp), dimension(3) :: force, force_change, centre, arm_change
+    real(wp) :: size_of_force
+    integer :: side
+
+    associate (links => self%contact%links)
+      place = self%contact%find_place(state%links(links(1)), state%links(links(2)))
+      if (.not. self%contact%is_rigid) then
+        size_of_force = self%contact%normal_force(place)
+      else if (allocated(state%contact_force)) then
+        size_of_force = dot_product(place%normal, state%contact_force(:, self%number))
+      else
+        size_of_force = 0.0_wp
+      end if
+      if (.not. abs(size_of_force) > 0.0_wp) return
+      varied = change_of_contact(self%contact, state%links(links(1)), state%links(links(2)), ball_change, surface_change, own)
+      force = size_of_force*place%normal
+      force_change = size_of_force*varied%normal &
+                     + vary_normal_force(self%contact, place%gap, place%gap_rate(), varied, own)*place%normal
+      centre = state%links(links(1))%point_position(self%contact%center)
+      do side = 1, 2
+        arm_change = varied%centre - merge(ball_change%shift, surface_change%shift, side == 1)
+        associate (k => links(side))
+          changes%force(:, k) = changes%force(:, k) + (3 - 2*side)*force_change
+          changes%torque(:, k) = changes%torque(:, k) &
+                                 + (3 - 2*side)*(cross(arm_change, force) + cross(centre - state%links(k)%p, force_change))
+        end associate
+      end do
+    end associate
+  end subroutine add_change
+
   !> Energy of a compliant contact without its damping [J].
   pure real(wp) function potential(self, state)
     class(contact_load_type), intent(in) :: self    !< the load
@@ -69,4 +150,28 @@ contains
 
     potential = self%contact%energy(self%contact%find_place(state%links(self%contact%links(1)), state%links(self%contact%links(2))))
   end function potential
+
+  !> The derivative of this energy by a parameter.
+  pure real(wp) function varied_potential(self, state, change, derivatives) result(energy)
+    class(contact_load_type), intent(in) :: self     !< the load
+    type(motion_view_type), intent(in) :: state      !< present motion of links and coordinates
+    type(motion_change_type), intent(in) :: change   !< derivative of the motion by the parameter
+    real(wp), intent(in) :: derivatives(:)           !< derivatives of its numbers; of size 0: all are zero
+    type(contact_place_type) :: place
+    type(contact_change_type) :: varied
+
+    energy = 0.0_wp
+    associate (contact => self%contact, links => self%contact%links)
+      if (contact%is_rigid) return
+      place = contact%find_place(state%links(links(1)), state%links(links(2)))
+      if (.not. place%gap < 0.0_wp) return
+      varied = change_of_contact(contact, state%links(links(1)), state%links(links(2)), change%links(links(1)), &
+                                 change%links(links(2)), derivatives)
+      associate (depth => -place%gap, n => contact%exponent + 1.0_wp)
+        energy = -contact%stiffness*depth**contact%exponent*varied%gap
+        if (size(derivatives) > 0) energy = energy + depth**n/n*(derivatives(18) &
+                                                                 + contact%stiffness*(log(depth) - 1.0_wp/n)*derivatives(20))
+      end associate
+    end associate
+  end function varied_potential
 end module mech9_contact_load

@@ -1,12 +1,13 @@
 !> Motions with directions beside them, by which neighbouring motions are known: which results they leave out, and why they may end early.
 module mech9_directed_motion
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, exit_singular
+  use mech9_error, only: error_type, place_type, raise, exit_data, exit_singular
   use mech9_text, only: to_text
   use mech9_model, only: model_type
   use mech9_request, only: output_settings_type
   use mech9_event_failures, only: failure_event_sensitivity
-  use mech9_simulation_failures, only: failure_angles_sensitivity
+  use mech9_integration_failures, only: failure_cornered_contact
+  use mech9_simulation_failures, only: failure_angles_sensitivity, failure_contact_sensitivity
   use mech9_free_simulation, only: free_simulation_type
   use mech9_sensitivity_words, only: find_cause_at_event
   implicit none
@@ -76,6 +77,7 @@ contains
     character(len=*), intent(in) :: missing               !< the numbers that do not exist behind such an event
     character(len=*), intent(in) :: unknown               !< the results that are not known in other angles of a joint
     character(len=:), allocatable :: time, cause
+    type(place_type) :: place
 
     if (.not. allocated(err)) return
     if (.not. allocated(err%failure)) return
@@ -86,6 +88,14 @@ contains
     else if (err%failure%kind == failure_angles_sensitivity) then
       call raise(err, exit_singular, time//'a ball joint comes near gimbal lock, and '//unknown//' are not known in other '// &
                  'angles; turn the axes of the joint by axis= and zero=')
+    else if (err%failure%kind == failure_contact_sensitivity) then
+      place = err%place
+      call raise(err, exit_data, unknown//' are not known with friction in contacts, and with frictions of pairs beside rigid '// &
+                 'contacts; leave the friction out, or make contacts without friction compliant by stiffness=', place)
+    else if (err%failure%kind == failure_cornered_contact) then
+      place = err%place
+      call raise(err, exit_data, time//'a contact stays closed on a path with corners, or at its end, where '//unknown// &
+                 ' are not known; give a path without corners on that side', place)
     end if
   end subroutine explain_refusal
 end module mech9_directed_motion

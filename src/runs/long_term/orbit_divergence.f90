@@ -94,7 +94,7 @@ contains
     integer, intent(in) :: motors(:)                            !< numbers of the motors with a state
     type(error_type), allocatable, intent(out) :: err           !< allocated if it failed
 
-    self%is_known = .true.
+    self%is_known = .not. is_closed(simulation)
     self%log_volume = 0.0_wp
     self%motors = motors
     self%first = simulation%motion%system%state%q
@@ -193,11 +193,21 @@ contains
     call simulation%leave_joint(err)
     if (.not. allocated(err)) call keep(self, simulation, err)
     if (allocated(err)) return
-    ! a stop that holds a coordinate leaves no volume
-    if (size(self%free) /= n) self%is_known = .false.
+    ! a stop that holds a coordinate leaves no volume, nor does a rigid contact that is closed
+    if (size(self%free) /= n .or. is_closed(simulation)) self%is_known = .false.
     if (self%is_known) self%log_volume = self%log_volume + log_determinant(self, self%free) - before
     self%plans = simulation%plans()
   end subroutine pass
+
+  !> Whether a rigid contact of links is closed.
+  pure logical function is_closed(simulation)
+    type(free_simulation_type), intent(in) :: simulation       !< the motion
+
+    is_closed = .false.
+    associate (system => simulation%motion%system)
+      if (allocated(system%contact)) is_closed = any(system%contact%acts .and. system%model%mechanism%contacts%is_rigid)
+    end associate
+  end function is_closed
 
   !> The logarithm of the volume of the directions in some coordinates, their rates, and the motors' states.
   real(wp) function log_determinant(self, free) result(log_volume)

@@ -64,7 +64,7 @@ contains
     type(stop_contacts_type), intent(inout) :: contacts                    !< all ends; those that are closed and held change
     real(wp), intent(out) :: impulses(:)                                   !< (M) on coordinates, positive while they grow [N m s, N s]
     real(wp), intent(out) :: changes(:)                                    !< (M) of the rates of all coordinates [rad/s, m/s]
-    type(impact_type), intent(out) :: impact                               !< on stops; not allocated parts: there is none
+    type(impact_type), intent(out) :: impact                               !< not allocated parts: there is none
     logical, intent(out) :: holds_change                                   !< other coordinates are to be held
     type(motion_events_type), intent(inout) :: events                      !< gets the events
     type(error_type), allocatable, intent(out) :: err                      !< allocated if it failed
@@ -132,7 +132,7 @@ contains
     end do
   end subroutine meet_contacts
 
-  !> The impact on ends of stops.
+  !> The impact on ends of stops and on contacts.
   pure type(impact_type) function impact_of(ends, touch, impulse, ends_after) result(impact)
     type(stop_contact_type), intent(in) :: ends(:)     !< all ends
     integer, intent(in) :: touch(:)                    !< numbers of those that touch
@@ -140,7 +140,7 @@ contains
     real(wp), intent(in) :: ends_after(:)              !< (touch) time until endless impacts end; negative: there are none [s]
     logical :: has(size(touch))
 
-    has = impulse > 0.0_wp .and. ends(touch)%contact == 0
+    has = impulse > 0.0_wp
     impact%ends = pack(touch, has)
     impact%impulse = pack(impulse, has)
     impact%restitution = pack(merge(0.0_wp, ends(touch)%restitution, ends_after >= 0.0_wp), has)

@@ -7,7 +7,7 @@ module mech9_event_tolerances
   private
   public :: round_off_of_limit, touching, drawn_behind_stop, jumped_behind, round_off_of_impacts, least_rebound, endless_part, &
     grazing, most_events, most_events_at_once, limit_of_sticking, at_rest, still, tied, round_off_of_sticking, beyond_all_bounds, &
-    pressing
+    pressing, known_use_rate
 
   ! Drives and outputs.
 
@@ -56,6 +56,9 @@ module mech9_event_tolerances
 
   !> A pair does not stick where its acceleration is so many times that by its largest friction: it has hardly any mobility there.
   real(wp), parameter :: beyond_all_bounds = 1.0e6_wp
+
+  !> Error of the rate at which a pair comes to its bound, in parts of this rate, up to which derivatives by parameters use it.
+  real(wp), parameter :: known_use_rate = 1.0e-6_wp
 
   !> Most events of a motion, and most at one time: more mean that the motion makes no progress.
   integer, parameter :: most_events = 1000000, most_events_at_once = 1000

@@ -10,13 +10,12 @@
 !>
 !> The derivative of an impact follows from a(q) d = J(q)^T L, with the coefficients of motion a, the changes d of the free rates and the
 !> impulses L of the stops: a d' = -(a)' d + (J^T)' L + J^T L'. The first two terms are those of a mechanism at rest with the accelerations
-!> d under the forces L; L' is what rates after the impact need, u' = -e u.
+!> d under the forces L; L' is what rates after the impact need, u' = -e u. A contact of links has the rows J of its gap.
 module mech9_event_variation
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, add_place, exit_singular
-  use mech9_event_failures, only: failure_event_sensitivity, &
-    cause_grazing, cause_several_impacts, cause_start_on_stop, cause_no_motion, cause_drive_jumps, cause_followed, &
-    cause_breaks_loose
+  use mech9_error, only: error_type
+  use mech9_event_failures, only: cause_grazing, cause_several_impacts, cause_start_on_stop, cause_no_motion, &
+    cause_drive_jumps, cause_followed, cause_breaks_loose, cause_held_hit
   use mech9_event_tolerances, only: grazing, least_rebound
   use mech9_cholesky, only: cholesky_factorize, cholesky_solve
   use mech9_state, only: state_type, copy_state
@@ -26,7 +25,14 @@ module mech9_event_variation
   use mech9_lagrange, only: find_equations, complete_accelerations
   use mech9_frame_motion, only: place_all
   use mech9_motion_system, only: motion_system_type
-  use mech9_stop_contacts, only: stop_contact_type
+  use mech9_motion_view, only: link_motion_type
+  use mech9_contact, only: contact_place_type
+  use mech9_contact_change, only: of_restitution
+  use mech9_contact_motion, only: place_of_contact
+  use mech9_varied_contacts, only: vary_gap, varied_numbers
+  use mech9_stop_contacts, only: stop_contact_type, gap_motion, gap_acceleration
+  use mech9_release_rate, only: find_use_rate
+  use mech9_event_refusals, only: refuse, refuse_at, follows_jumps
   use mech9_contact_equations, only: contact_equations_type, find_contact_equations
   implicit none
   private
@@ -34,7 +40,7 @@ module mech9_event_variation
 
   !> An impact, as the motion had it.
   type :: impact_type
-    integer, allocatable :: ends(:)          !< numbers of the ends of stops with an impulse
+    integer, allocatable :: ends(:)          !< numbers of the ends of stops, and of contacts, with an impulse
     real(wp), allocatable :: impulse(:)      !< (ends) their impulses, which are above zero [N m s, N s]
     real(wp), allocatable :: restitution(:)  !< (ends) that was used: 0 where endless impacts are left out
   end type impact_type
@@ -47,6 +53,8 @@ module mech9_event_variation
     real(wp), allocatable :: dq(:)            !< (M) rates of all coordinates before the event [rad/s, m/s]
     real(wp), allocatable :: ddq(:)           !< (M) their accelerations before it [rad/s^2, m/s^2]
     real(wp), allocatable :: motor_rates(:)   !< (motors) rates of the states of motors before it
+    real(wp), allocatable :: gaps(:, :, :)    !< (P,0:2,contacts) derivatives of gaps and of their derivatives in time, at a fixed time before it
+    real(wp), allocatable :: gap_motion(:, :) !< (0:2,contacts) the gaps, their rates and accelerations before it [m]
   contains
     procedure :: begin
     procedure :: set_time
@@ -60,14 +68,19 @@ module mech9_event_variation
 
 contains
 
-  !> The derivatives of the limit at an end of a stop by all parameters [rad, m].
-  pure function varied_limit(tangents, end) result(limits)
+  !> The derivatives of a gap by all parameters, at a fixed time [rad, m].
+  function varied_gap(self, tangents, end) result(changes)
+    type(event_variation_type), intent(in) :: self  !< the derivatives, at a fixed time
     type(tangent_type), intent(in) :: tangents(:)   !< (P) derivatives of the constants
-    type(stop_contact_type), intent(in) :: end      !< the end of a stop
-    real(wp) :: limits(size(tangents))
+    type(stop_contact_type), intent(in) :: end      !< the end of a stop, or a contact
+    real(wp) :: changes(size(tangents))
 
-    limits = varied_number(tangents, end, merge(1, 2, end%direction > 0))
-  end function varied_limit
+    if (end%is_stop()) then
+      changes = end%direction*(self%q(:, 0, end%coordinate) - varied_number(tangents, end, merge(1, 2, end%direction > 0)))
+    else
+      changes = self%gaps(:, 0, end%contact)
+    end if
+  end function varied_gap
 
   !> The derivatives of a number of a stop by all parameters.
   pure function varied_number(tangents, end, place) result(changes)
@@ -82,6 +95,53 @@ contains
       if (tangents(p)%stops(end%stop)%varies) changes(p) = tangents(p)%stops(end%stop)%change(place)
     end do
   end function varied_number
+
+  !> The derivatives of the restitution of a stop or a contact by all parameters.
+  function varied_restitution(system, end) result(changes)
+    class(motion_system_type), intent(in) :: system        !< the system
+    type(stop_contact_type), intent(in) :: end             !< the end of a stop, or a contact
+    real(wp) :: changes(size(system%sensitivity%motion%tangents))
+    real(wp), allocatable :: numbers(:)
+    integer :: p
+
+    associate (tangents => system%sensitivity%motion%tangents)
+      if (end%is_stop()) then
+        changes = varied_number(tangents, end, 3)
+        return
+      end if
+      changes = 0.0_wp
+      do p = 1, size(tangents)
+        numbers = varied_numbers(system%model%mechanism, tangents(p), end%contact)
+        if (size(numbers) > 0) changes(p) = numbers(of_restitution)
+      end do
+    end associate
+  end function varied_restitution
+
+  !> The rate of a gap before the event, and its derivative in time.
+  pure function motion_before(self, end) result(motion)
+    type(event_variation_type), intent(in) :: self         !< the event
+    type(stop_contact_type), intent(in) :: end             !< the end of a stop, or a contact
+    real(wp) :: motion(2)
+
+    if (end%is_stop()) then
+      motion = end%direction*[self%dq(end%coordinate), self%ddq(end%coordinate)]
+    else
+      motion = self%gap_motion(1:2, end%contact)
+    end if
+  end function motion_before
+
+  !> The derivatives of the rate of a gap before the event by all parameters, carried along with its time.
+  function rate_carried(self, end) result(changes)
+    type(event_variation_type), intent(in) :: self         !< the derivatives, carried along
+    type(stop_contact_type), intent(in) :: end             !< the end of a stop, or a contact
+    real(wp) :: changes(size(self%time))
+
+    if (end%is_stop()) then
+      changes = end%direction*self%q(:, 1, end%coordinate)
+    else
+      changes = self%gaps(:, 1, end%contact) + self%time*self%gap_motion(2, end%contact)
+    end if
+  end function rate_carried
 
   !> Begin at the time of an event, which at first does not change with parameters.
   subroutine begin(self, system, of_held, err)
@@ -103,7 +163,26 @@ contains
     self%motor_rates = spread(0.0_wp, 1, size(self%motors, 2))
     if (allocated(system%state%motor)) self%motor_rates = system%state%motor_rate
     self%time = spread(0.0_wp, 1, size(self%q, 1))
+    if (allocated(system%contact)) call keep_gaps(self, system)
   end subroutine begin
+
+  !> Keep the gaps of all contacts before the event, and their derivatives.
+  subroutine keep_gaps(self, system)
+    class(event_variation_type), intent(inout) :: self     !< gets them
+    class(motion_system_type), intent(in) :: system        !< the system before the event, with its motion
+    type(stop_contact_type) :: end
+    integer :: i
+
+    associate (n => size(system%model%mechanism%contacts), mechanism => system%model%mechanism)
+      allocate (self%gaps(size(self%time), 0:2, n), self%gap_motion(0:2, n))
+      do i = 1, n
+        end = stop_contact_type(contact=i, is_rigid=mechanism%contacts(i)%is_rigid)
+        self%gap_motion(0:1, i) = gap_motion(mechanism, system%plan, system%state, end)
+        self%gap_motion(2, i) = gap_acceleration(mechanism, system%plan, system%state, end)
+        call vary_gap(system%model, system%sensitivity%motion, i, self%gaps(:, :, i))
+      end do
+    end associate
+  end subroutine keep_gaps
 
   !> Carry the derivatives along with the time of the event.
   pure subroutine set_time(self, time)
@@ -119,27 +198,27 @@ contains
     end do
   end subroutine set_time
 
-  !> Take the time at which a rigid end of a stop is met. Fails where it is met without a rate.
+  !> Take the time at which a rigid end of a stop, or a contact, is met. Fails where it is met without a rate.
   subroutine meet_stop(self, system, end, err)
     class(event_variation_type), intent(inout) :: self     !< the derivatives, at a fixed time
     class(motion_system_type), intent(in) :: system        !< the system
     type(stop_contact_type), intent(in) :: end             !< the end
     type(error_type), allocatable, intent(out) :: err      !< allocated if there are no derivatives
+    real(wp) :: motion(2)
 
-    associate (k => end%coordinate, limits => varied_limit(system%sensitivity%motion%tangents, end))
-      if (.not. self%dq(k)**2 > 2.0_wp*grazing*least_rebound*abs(self%ddq(k))*end%unit(system%plan)) then
-        call refuse(system, cause_grazing, end%stop, err)
-      else
-        call self%set_time((limits - self%q(:, 0, k))/self%dq(k))
-      end if
-    end associate
+    motion = motion_before(self, end)
+    if (.not. motion(1)**2 > 2.0_wp*grazing*least_rebound*abs(motion(2))*end%unit(system%plan)) then
+      call refuse_at(system, cause_grazing, end, err)
+    else
+      call self%set_time(-varied_gap(self, system%sensitivity%motion%tangents, end)/motion(1))
+    end if
   end subroutine meet_stop
 
   !> Take the time at which a pair with friction comes to rest, or begins to slip. Where its coefficients at rest and of sliding are the
   !> same, accelerations do not jump when it begins to slip, and the time does not matter. Fails where there are no derivatives.
   subroutine meet_friction(self, system, number, err)
     class(event_variation_type), intent(inout) :: self     !< the derivatives, at a fixed time
-    class(motion_system_type), intent(in) :: system        !< the system before the event, with its modes of friction
+    class(motion_system_type), intent(inout) :: system     !< the system before the event, with its modes of friction
     integer, intent(in) :: number                          !< of the friction
     type(error_type), allocatable, intent(out) :: err      !< allocated if there are no derivatives
     integer :: group
@@ -147,8 +226,14 @@ contains
     group = system%friction%modes%group(number)
     associate (frictions => system%model%mechanism%frictions, k => system%model%mechanism%frictions(number)%coordinate)
       if (group > 0) then
-        if (any(system%friction%modes%group == group .and. abs(frictions%static - frictions%dynamic) > 0.0_wp)) &
+        if (.not. any(system%friction%modes%group == group .and. abs(frictions%static - frictions%dynamic) > 0.0_wp)) return
+        if (count(system%friction%modes%group == group) > 1) then
           call refuse(system, cause_breaks_loose, number, err)
+        else if (follows_jumps(system, .false.)) then
+          call refuse(system, cause_followed, 0, err)
+        else
+          call break_loose(self, system, number, err)
+        end if
       else if (.not. abs(self%ddq(k)) > 0.0_wp) then
         call refuse(system, cause_no_motion, number, err)
       else if (follows_jumps(system, .false.)) then
@@ -159,26 +244,28 @@ contains
     end associate
   end subroutine meet_friction
 
-  !> Fail because an event has no derivatives.
-  subroutine refuse(system, cause, number, err)
-    class(motion_system_type), intent(in) :: system        !< the system at the event
-    integer, intent(in) :: cause                           !< one of the constants above
-    integer, intent(in) :: number                          !< of the stop or the friction
-    type(error_type), allocatable, intent(out) :: err      !< the failure
+  !> Take the time at which a pair that sticks alone comes to its bound, above that of sliding: the part of the bound that it needs is 1
+  !> there. Fails where this part does not change in time.
+  subroutine break_loose(self, system, number, err)
+    class(event_variation_type), intent(inout) :: self     !< the derivatives, at a fixed time
+    class(motion_system_type), intent(inout) :: system     !< the system before the event; stands there afterwards
+    integer, intent(in) :: number                          !< of the friction
+    type(error_type), allocatable, intent(out) :: err      !< allocated if there are no derivatives
+    real(wp) :: changes(size(self%time)), rate
+    logical :: found
 
-    call raise(err, exit_singular, failure_event_sensitivity)
-    err%failure%t = system%state%t
-    err%failure%number = number
-    err%failure%limit = cause
-    if (number == 0) return
-    if (cause == cause_no_motion .or. cause == cause_breaks_loose) then
-      call add_place(err, place=system%model%mechanism%frictions(number)%place)
+    call system%vary_friction(number, changes, err)
+    if (.not. allocated(err)) call find_use_rate(system, number, rate, found, err)
+    if (allocated(err)) return
+    if (found) found = rate > 0.0_wp
+    if (found) then
+      call self%set_time(-changes/rate)
     else
-      call add_place(err, place=system%model%mechanism%stops(number)%place)
+      call refuse(system, cause_breaks_loose, number, err)
     end if
-  end subroutine refuse
+  end subroutine break_loose
 
-  !> Pass an impact on rigid stops. No stop and no friction holds a coordinate in the plan of the system. Fails where derivatives do not
+  !> Pass an impact on rigid stops and contacts. No stop and no friction holds a coordinate in the plan of the system. Fails where derivatives do not
   !> exist.
   subroutine pass_impact(self, system, contacts, impact, at_start, err)
     class(event_variation_type), intent(inout) :: self     !< the derivatives, at a fixed time; then carried along, behind the impact
@@ -189,7 +276,7 @@ contains
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     type(contact_equations_type) :: equations
     type(state_type) :: behind
-    real(wp), dimension(size(self%time), size(impact%ends)) :: before, target
+    real(wp) :: target(size(self%time), size(impact%ends)), motion(2)
     integer :: i
 
     associate (ends => contacts(impact%ends))
@@ -198,21 +285,30 @@ contains
         return
       end if
       if (count(.not. ends%held) > 1) then
-        call refuse(system, cause_several_impacts, ends(findloc(ends%held, .false., dim=1))%stop, err)
+        call refuse_at(system, cause_several_impacts, ends(findloc(ends%held, .false., dim=1)), err)
         return
       end if
       do i = 1, size(ends)
-        if (.not. (ends(i)%held .or. at_start)) call self%meet_stop(system, ends(i), err)
+        if (ends(i)%held) cycle
+        if (at_start) then
+          call check_met_at_start(self, system, ends(i), err)
+        else
+          call self%meet_stop(system, ends(i), err)
+        end if
         if (allocated(err)) return
       end do
       call find_contact_equations(system, [(.false., i=1, system%plan%n_coordinates)], ends, equations, err)
       if (allocated(err)) return
       do i = 1, size(ends)
-        before(:, i) = ends(i)%direction*self%q(:, 1, ends(i)%coordinate)
-        target(:, i) = -impact%restitution(i)*before(:, i)
-        if (impact%restitution(i) > 0.0_wp) target(:, i) = target(:, i) - ends(i)%direction*self%dq(ends(i)%coordinate) &
-                                                           *varied_number(system%sensitivity%motion%tangents, ends(i), 3)
-        if (ends(i)%held) target(:, i) = 0.0_wp
+        motion = motion_before(self, ends(i))
+        target(:, i) = 0.0_wp
+        if (.not. ends(i)%held) then
+          target(:, i) = -impact%restitution(i)*rate_carried(self, ends(i))
+          if (impact%restitution(i) > 0.0_wp) target(:, i) = target(:, i) - motion(1)*varied_restitution(system, ends(i))
+        else if (abs(motion(1)) > equations%round_off(i) .and. impact%restitution(i) > 0.0_wp .and. .not. ends(i)%is_stop()) then
+          call refuse_at(system, cause_held_hit, ends(i), err)
+          return
+        end if
       end do
       call copy_state(system%state, behind)
       call give_to(self, system)
@@ -224,40 +320,6 @@ contains
       if (.not. allocated(err)) call place_all(system%plan, system%state, err)
     end associate
   end subroutine pass_impact
-
-  !> Whether derivatives are wanted of quantities that an event disturbs between outputs: sums of columns that jump, whose time it moves,
-  !> and extremes of columns that jump or have kinks. Positions are smooth but for kinks at impacts.
-  pure logical function follows_jumps(system, rates_jump)
-    class(motion_system_type), intent(in) :: system        !< the system
-    logical, intent(in) :: rates_jump                      !< rates jump, and not accelerations alone
-    logical :: sums
-    integer :: i
-
-    follows_jumps = .false.
-    associate (request => system%model%request)
-      if (.not. (request%output%gradients .and. allocated(request%quantities))) return
-      do i = 1, size(request%quantities)
-        associate (quantity => request%quantities(i))
-          if (any(quantity%take == [character(len=5) :: 'start', 'end', 'at'])) cycle
-          sums = any(quantity%take == [character(len=8) :: 'mean', 'rms', 'integral'])
-          if (is_position(quantity%column) .and. (sums .or. .not. rates_jump)) cycle
-          follows_jumps = .true.
-        end associate
-      end do
-    end associate
-  end function follows_jumps
-
-  !> Whether a column is a coordinate or a component of the place of a point.
-  pure logical function is_position(column)
-    character(len=*), intent(in) :: column   !< its heading
-    integer :: n
-
-    n = len(column)
-    is_position = .false.
-    if (n < 2) return
-    is_position = column(1:1) == 'q' .and. verify(column(2:), '0123456789') == 0
-    if (index(column, '.pole.') == 0) is_position = is_position .or. any(column(n - 1:) == ['.x', '.y', '.z'])
-  end function is_position
 
   !> Give the derivatives to those of the system, so that all coordinates move along with the time of the event.
   subroutine give_to(self, system)
@@ -290,6 +352,8 @@ contains
     real(wp), intent(in) :: rates(:)                       !< (M) behind the impact [rad/s, m/s]
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     real(wp) :: changes(size(self%time), size(system%plan%free)), part
+    type(contact_place_type) :: place
+    type(link_motion_type) :: ball, surface
     integer :: i, j
 
     changes = 0.0_wp
@@ -308,15 +372,21 @@ contains
         call complete_accelerations(plan, system%dynamics, system%work, system%state)
         sensitivity%gradient%given = 0.0_wp
         do j = 1, size(ends)
-          associate (force => sensitivity%gradient%given(ends(j)%coordinate))
-            force = force + part*ends(j)%direction*impact%impulse(j)
-          end associate
+          if (ends(j)%is_stop()) then
+            associate (force => sensitivity%gradient%given(ends(j)%coordinate))
+              force = force + part*ends(j)%direction*impact%impulse(j)
+            end associate
+          else
+            call place_of_contact(system%model%mechanism%contacts(ends(j)%contact), plan, system%state, place, ball, surface)
+            system%state%contact_force(:, ends(j)%contact) = part*impact%impulse(j)*place%normal
+          end if
         end do
         call sensitivity%find_accelerations(system%model, system%state, system%work, err)
         if (allocated(err)) exit
         changes = changes + (2.0_wp*part - 1.0_wp)*sensitivity%values(:, :, 2)
       end do
       deallocate (sensitivity%gradient%given)
+      if (allocated(system%contact)) system%state%contact_force = 0.0_wp
       sensitivity%values(:, :, 1) = sensitivity%values(:, :, 1) + changes
     end associate
   end subroutine add_varied_impact
@@ -330,6 +400,7 @@ contains
     real(wp), intent(in) :: target(:, :)                       !< (P,ends) derivatives of the rates of their gaps there
     type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
     real(wp) :: factors(size(ends), size(ends)), impulses(size(ends))
+    real(wp) :: changes(size(target, 1), 0:2), left(size(target, 1), size(ends))
     integer :: i, j, p, failed_at
 
     system%state%dq = rates
@@ -341,12 +412,21 @@ contains
     factors = equations%g
     call cholesky_factorize(size(ends), factors, failed_at)
     if (failed_at > 0) then
-      call refuse(system, cause_several_impacts, ends(failed_at)%stop, err)
+      call refuse_at(system, cause_several_impacts, ends(failed_at), err)
       return
     end if
-    associate (values => system%sensitivity%values, q => system%sensitivity%motion%q, plan => system%plan)
+    left = target
+    do i = 1, size(ends)
+      if (ends(i)%is_stop()) then
+        left(:, i) = left(:, i) - ends(i)%direction*system%sensitivity%motion%q(:, 1, ends(i)%coordinate)
+      else
+        call vary_gap(system%model, system%sensitivity%motion, ends(i)%contact, changes)
+        left(:, i) = left(:, i) - changes(:, 1)
+      end if
+    end do
+    associate (values => system%sensitivity%values, plan => system%plan)
       do p = 1, size(target, 1)
-        impulses = target(p, :) - ends%direction*q(p, 1, ends%coordinate)
+        impulses = left(p, :)
         call cholesky_solve(size(ends), factors, impulses)
         do i = 1, size(plan%free)
           j = findloc(equations%free, plan%free_places(i), dim=1)
@@ -418,30 +498,47 @@ contains
     end do
   end function motors_behind
 
-  !> Fail where a parameter moves a start away from a stop that holds it there, or behind it.
+  !> Fail where a parameter moves a start away from a stop or a contact that holds it there, or behind it.
   subroutine check_start(self, system, ends, err)
     class(event_variation_type), intent(in) :: self        !< the derivatives at the start
     class(motion_system_type), intent(in) :: system        !< the system there
     type(stop_contact_type), intent(in) :: ends(:)         !< all ends, closed or open as they are from the start on
     type(error_type), allocatable, intent(out) :: err      !< allocated where derivatives do not exist
-    real(wp) :: moves(size(self%time))
-    integer :: i, p
+    integer :: i
 
     call check_start_of_slip(self, system, err)
-    if (allocated(err)) return
     do i = 1, size(ends)
-      if (.not. (ends(i)%is_rigid .and. ends(i)%closed .and. ends(i)%is_stop())) cycle
-      associate (sensitivity => system%sensitivity, parameters => system%model%parameters)
-        moves = abs(self%q(:, 0, ends(i)%coordinate) - varied_limit(sensitivity%motion%tangents, ends(i)))
-        do p = 1, size(moves)
-          if (size(parameters(p)%targets) == 0) cycle
-          if (moves(p) <= round_off_of_jumps*sensitivity%size_of(p)*ends(i)%unit(system%plan)) cycle
-          call refuse(system, cause_start_on_stop, ends(i)%stop, err)
-          return
-        end do
-      end associate
+      if (allocated(err)) return
+      if (ends(i)%is_rigid .and. ends(i)%closed) call check_met_at_start(self, system, ends(i), err)
     end do
   end subroutine check_start
+
+  !> Fail where a parameter moves a start away from a stop or a contact that is met there, or behind it; also where it changes the rate of
+  !> the gap of a contact that is closed from the start on.
+  subroutine check_met_at_start(self, system, end, err)
+    class(event_variation_type), intent(in) :: self        !< the derivatives at the start
+    class(motion_system_type), intent(in) :: system        !< the system there
+    type(stop_contact_type), intent(in) :: end             !< the end
+    type(error_type), allocatable, intent(out) :: err      !< allocated where derivatives do not exist
+    real(wp) :: moves(size(self%time))
+    integer :: p
+
+    associate (sensitivity => system%sensitivity, parameters => system%model%parameters, time => system%model%request%time)
+      moves = abs(varied_gap(self, sensitivity%motion%tangents, end))
+      if (end%closed .and. .not. end%is_stop()) then
+        ! a contact that is hit at the start may be hit at another rate
+        if (abs(time%end - time%start)*self%gap_motion(1, end%contact) > -round_off_of_jumps*end%unit(system%plan)) &
+          moves = moves + abs(time%end - time%start)*abs(self%gaps(:, 1, end%contact))
+      end if
+      do p = 1, size(moves)
+        ! a stop takes from directions what it holds
+        if (size(parameters(p)%targets) == 0 .and. end%is_stop()) cycle
+        if (moves(p) <= round_off_of_jumps*sensitivity%size_of(p)*end%unit(system%plan)) cycle
+        call refuse_at(system, cause_start_on_stop, end, err)
+        return
+      end do
+    end associate
+  end subroutine check_met_at_start
 
   !> Fail where a pair begins to slip from rest at the start, and a parameter changes its rate: its friction would turn round.
   subroutine check_start_of_slip(self, system, err)

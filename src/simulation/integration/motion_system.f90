@@ -36,7 +36,8 @@ module mech9_motion_system
   use mech9_contact_motion, only: contact_motion_type, begin_contact_motion, find_contact_motion, correct_positions, correct_rates
   use mech9_variable_model, only: variable_model_type
   use mech9_motion_sensitivity, only: motion_sensitivity_type, new_motion_sensitivity
-  use mech9_varied_frictions, only: varied_frictions_type, find_varied_frictions
+  use mech9_varied_contacts, only: find_varied_contacts
+  use mech9_varied_frictions, only: varied_frictions_type, find_varied_frictions, vary_use
   implicit none
   private
   public :: motion_system_type, set_motion_system, free_system
@@ -71,6 +72,7 @@ module mech9_motion_system
     procedure :: count_varied
     procedure :: begin_sensitivity
     procedure :: show_sensitivity
+    procedure :: vary_friction
     procedure :: vector
     procedure :: rate
     procedure :: take_vector
@@ -300,6 +302,18 @@ contains
     call self%sensitivity%complete(self%model, self%state, err)
   end subroutine show_sensitivity
 
+  !> Find the derivatives of the part of its bound that a pair needs which sticks alone, at a state that is presented.
+  subroutine vary_friction(self, number, changes, err)
+    class(motion_system_type), intent(inout) :: self    !< the motion system, with its motion
+    integer, intent(in) :: number                       !< of the friction
+    real(wp), intent(out) :: changes(:)                 !< (P) the derivatives
+    type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+
+    call vary_accelerations(self, err, with_sticking=.true.)
+    if (.not. allocated(err)) call vary_use(self%model, self%plan, self%state, self%friction, self%sensitivity, &
+                                            self%varied_frictions, number, changes, err)
+  end subroutine vary_friction
+
   !> Find the derivatives of the free accelerations, for a motion whose accelerations are complete.
   subroutine vary_accelerations(self, err, with_sticking)
     class(motion_system_type), intent(inout) :: self    !< the motion system
@@ -308,6 +322,8 @@ contains
     logical :: rubs
 
     call self%sensitivity%find_accelerations(self%model, self%state, self%work, err)
+    if (allocated(self%contact) .and. .not. allocated(err)) call find_varied_contacts(self%model, self%plan, self%dynamics, &
+      self%state, self%work, self%contact, self%sensitivity, err)
     if (allocated(err) .or. .not. allocated(self%friction)) return
     rubs = present(with_sticking) .or. self%friction%modes%any_slips() .or. any(self%model%mechanism%frictions%is_smooth)
     if (.not. rubs) return

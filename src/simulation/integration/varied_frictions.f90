@@ -22,7 +22,7 @@ module mech9_varied_frictions
   use mech9_friction_motion, only: friction_motion_type
   implicit none
   private
-  public :: varied_frictions_type, find_varied_frictions
+  public :: varied_frictions_type, find_varied_frictions, vary_use
 
   !> Scratch for the derivatives: required forces, and reactions.
   type :: varied_frictions_type
@@ -77,6 +77,42 @@ contains
       end do
     end associate
   end subroutine find_varied_frictions
+
+  !> The derivatives of the utilization of a pair that sticks alone, without its sign, after find_varied_frictions with the pairs that
+  !> stick: of the part of its bound that it needs. Fails where wrenches have no derivatives.
+  subroutine vary_use(model, plan, state, friction, sensitivity, self, i, changes, err)
+    type(model_type), intent(in) :: model                            !< the model
+    type(plan_type), intent(in) :: plan                              !< its plan
+    type(state_type), intent(in) :: state                            !< the motion, with all accelerations
+    class(friction_motion_type), intent(in) :: friction              !< the frictions, solved in this motion
+    type(motion_sensitivity_type), intent(inout) :: sensitivity      !< the derivatives
+    type(varied_frictions_type), intent(inout) :: self               !< scratch, as find_varied_frictions left it
+    integer, intent(in) :: i                                         !< number of the friction
+    real(wp), intent(out) :: changes(:)                              !< (P) the derivatives
+    type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
+    real(wp) :: wrench(6), change(6), load, part
+    integer :: p
+
+    changes = 0.0_wp
+    call sensitivity%complete(model, state, err)
+    associate (motion => sensitivity%motion, one => model%mechanism%frictions(i), balance => friction%balance)
+      if (.not. allocated(err)) call find_varied_forces(model, motion, self%forces, err)
+      if (.not. allocated(err)) call find_varied_reactions(model, motion, self%forces%links, self%reactions, err)
+      if (allocated(err)) return
+      wrench = balance%wrenches(:, i) + matmul(balance%by_force(:, i, :), balance%force)
+      load = one%bearing_load(one%terms(wrench))
+      do p = 1, size(changes)
+        change = varied_wrench(plan, state, friction, i, one%coordinate, motion, self%reactions, wrench, p)
+        associate (tangent => motion%tangents(p)%frictions(i))
+          part = one%static*(dot_product(slopes_of(one, wrench), change) &
+                             + varied_load(one, tangent%varies, tangent%change, motion%tangents(p)%slide(one%coordinate), wrench))
+          if (tangent%varies) part = part + tangent%change(1)*load
+          changes(p) = (sign(1.0_wp, balance%force(i))*motion%friction(p, i) - abs(balance%force(i))/(one%static*load)*part) &
+                       /(one%static*load)
+        end associate
+      end do
+    end associate
+  end subroutine vary_use
 
   !> The derivatives of the forces of pairs that slip, and what these change of the forces of pairs that stick.
   subroutine find_forces(model, plan, state, friction, motion, self, forces, err)

@@ -1,0 +1,77 @@
+!> Refusals of derivatives by parameters at events that have none.
+module mech9_event_refusals
+  use mech9_error, only: error_type, raise, add_place, exit_singular
+  use mech9_event_failures, only: failure_event_sensitivity
+  use mech9_motion_system, only: motion_system_type
+  use mech9_stop_contacts, only: stop_contact_type
+  implicit none
+  private
+  public :: refuse, refuse_at, follows_jumps
+
+contains
+
+  !> Fail because an event has no derivatives.
+  subroutine refuse(system, cause, number, err)
+    class(motion_system_type), intent(in) :: system        !< the system at the event
+    integer, intent(in) :: cause                           !< one of the constants above
+    integer, intent(in) :: number                          !< of the friction; 0: another cause
+    type(error_type), allocatable, intent(out) :: err      !< the failure
+
+    call raise(err, exit_singular, failure_event_sensitivity)
+    err%failure%t = system%state%t
+    err%failure%number = number
+    err%failure%limit = cause
+    if (number > 0) call add_place(err, place=system%model%mechanism%frictions(number)%place)
+  end subroutine refuse
+
+  !> Fail because an event at a stop or a contact has no derivatives.
+  subroutine refuse_at(system, cause, end, err)
+    class(motion_system_type), intent(in) :: system        !< the system at the event
+    integer, intent(in) :: cause                           !< one of the constants above
+    type(stop_contact_type), intent(in) :: end             !< the end of a stop, or the contact
+    type(error_type), allocatable, intent(out) :: err      !< the failure
+
+    call refuse(system, cause, 0, err)
+    err%failure%number = end%number()
+    err%failure%name = trim(end%group())
+    if (end%is_stop()) then
+      call add_place(err, place=system%model%mechanism%stops(end%stop)%place)
+    else
+      call add_place(err, place=system%model%mechanism%contacts(end%contact)%place)
+    end if
+  end subroutine refuse_at
+
+  !> Whether derivatives are wanted of quantities that an event disturbs between outputs: sums of columns that jump, whose time it moves,
+  !> and extremes of columns that jump or have kinks. Positions are smooth but for kinks at impacts.
+  pure logical function follows_jumps(system, rates_jump)
+    class(motion_system_type), intent(in) :: system        !< the system
+    logical, intent(in) :: rates_jump                      !< rates jump, and not accelerations alone
+    logical :: sums
+    integer :: i
+
+    follows_jumps = .false.
+    associate (request => system%model%request)
+      if (.not. (request%output%gradients .and. allocated(request%quantities))) return
+      do i = 1, size(request%quantities)
+        associate (quantity => request%quantities(i))
+          if (any(quantity%take == [character(len=5) :: 'start', 'end', 'at'])) cycle
+          sums = any(quantity%take == [character(len=8) :: 'mean', 'rms', 'integral'])
+          if (is_position(quantity%column) .and. (sums .or. .not. rates_jump)) cycle
+          follows_jumps = .true.
+        end associate
+      end do
+    end associate
+  end function follows_jumps
+
+  !> Whether a column is a coordinate or a component of the place of a point.
+  pure logical function is_position(column)
+    character(len=*), intent(in) :: column   !< its heading
+    integer :: n
+
+    n = len(column)
+    is_position = .false.
+    if (n < 2) return
+    is_position = column(1:1) == 'q' .and. verify(column(2:), '0123456789') == 0
+    if (index(column, '.pole.') == 0) is_position = is_position .or. any(column(n - 1:) == ['.x', '.y', '.z'])
+  end function is_position
+end module mech9_event_refusals

@@ -1,0 +1,311 @@
+"""Derivatives by parameters through contacts of links without friction: impacts, compliant contacts, sliding and lifting off, against closed
+forms and independent integrations in complex numbers, whose derivatives are exact.
+
+Compares the program with itself: derivatives of mechanisms with several coordinates against differences of runs."""
+import cmath
+
+import pytest
+
+from event_derivative_cases import COLUMNS, FOUR_BAR, TIGHT, against_differences, go, kinds
+
+INCLINED = """&structure cq=1,2,3 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&pair coordinate=2, links=2,3, kind='prismatic', axis=0,0,1 /
+&pair coordinate=3, links=1,4, kind='prismatic', axis=1,0,0 /
+&body link=3, mass=2 /
+&gravity acceleration=0,0,-9.81 /
+&drive coordinate=3, kind='polynomial', coefficients=0,0.4 /
+&point name='C', link=3, position=0.1,0,0.2 /
+&contact point='C', link=4, radius=0.3, origin=0.2,0,-0.5, normal=-0.5,0,2, restitution=0.7 /
+&initial coordinate=1, position=0.3, velocity=0.6 /
+&initial coordinate=2, position=0.9, velocity=0.2 /
+&parameter name='x', sets='initial(1).position' /
+&parameter name='z', sets='initial(2).position' /
+&parameter name='vx', sets='initial(1).velocity' /
+&parameter name='g', sets='gravity(1).acceleration(3)' /
+&parameter name='V', sets='drive(1).coefficients(2)' /
+&parameter name='cx', sets='point(1).position(1)' /
+&parameter name='cz', sets='point(1).position(3)' /
+&parameter name='r', sets='contact(1).radius' /
+&parameter name='ox', sets='contact(1).origin(1)' /
+&parameter name='oz', sets='contact(1).origin(3)' /
+&parameter name='nx', sets='contact(1).normal(1)' /
+&parameter name='nz', sets='contact(1).normal(3)' /
+&parameter name='e', sets='contact(1).restitution' /
+&parameter name='m', sets='body(1).mass' /
+"""
+TWO_BALLS = """&structure cq=1,2,3,4 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&pair coordinate=2, links=2,3, kind='prismatic', axis=0,1,0 /
+&pair coordinate=3, links=1,4, kind='prismatic', axis=1,0,0 /
+&pair coordinate=4, links=4,5, kind='prismatic', axis=0,1,0 /
+&body link=3, mass=2 /
+&body link=5, mass=3 /
+&point name='C', link=3, position=0,0,0 /
+&contact point='C', link=5, kind='sphere', radius=0.3, other_radius=0.5, restitution=0.6 /
+&initial coordinate=1, position=0, velocity=1 /
+&initial coordinate=2, position=0.2, velocity=0.3 /
+&initial coordinate=3, position=1.5, velocity=-0.5 /
+&initial coordinate=4, position=0.5, velocity=0.1 /
+&parameter name='x', sets='initial(1).position' /
+&parameter name='y', sets='initial(4).position' /
+&parameter name='v', sets='initial(3).velocity' /
+&parameter name='m', sets='body(1).mass' /
+&parameter name='M', sets='body(2).mass' /
+&parameter name='r', sets='contact(1).radius' /
+&parameter name='R', sets='contact(1).other_radius' /
+&parameter name='e', sets='contact(1).restitution' /
+"""
+DROP = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=0,0,1 /
+&body link=2, mass=2 /
+&gravity acceleration=0,0,-9.81 /
+&point name='C', link=2, position=0,0,0 /
+&contact point='C', radius=0.1, stiffness=8000, damping=3000, exponent=1.5 /
+&initial coordinate=1, position=0.5 /
+&parameter name='h', sets='initial(1).position' /
+&parameter name='m', sets='body(1).mass' /
+&parameter name='r', sets='contact(1).radius' /
+&parameter name='k', sets='contact(1).stiffness' /
+&parameter name='c', sets='contact(1).damping' /
+&parameter name='n', sets='contact(1).exponent' /
+"""
+HILL = """&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&pair coordinate=2, links=2,3, kind='prismatic', axis=0,0,1 /
+&body link=3, mass=2 /
+&gravity acceleration=0,0,-9.81 /
+&point name='C', link=3, position=0,0,0 /
+&contact point='C', kind='sphere', radius=0.2, other_radius=0.8 /
+&initial coordinate=1, position=0.2 /
+&initial coordinate=2, position=1.1 /
+&parameter name='x', sets='initial(1).position' /
+&parameter name='z', sets='initial(2).position' /
+&parameter name='r', sets='contact(1).radius' /
+&parameter name='R', sets='contact(1).other_radius' /
+&parameter name='g', sets='gravity(1).acceleration(3)' /
+&parameter name='m', sets='body(1).mass' /
+"""
+
+
+def against_complex(checks, program, folder, text, motion, at, end, tol, columns=('q1', 'dq1', 'q2', 'dq2')):
+    """Columns and their derivatives against a motion that is computed with complex numbers."""
+    table, report, _ = go(program, folder, text + COLUMNS + TIGHT, end=end)
+    values = motion(end, **at)
+    for i, column in enumerate(columns):
+        checks.near(table[column][-1], complex(values[i]).real, tol, column, scale=max(1.0, abs(values[i])))
+        for name in at:
+            moved = {key: value + (1e-30j if key == name else 0) for key, value in at.items()}
+            slope = complex(motion(end, **moved)[i]).imag / 1e-30
+            checks.near(table[f'd({column})/d({name})'][-1], slope, tol, f'{column} by {name}', scale=max(1.0, abs(slope)))
+    return report
+
+
+def first_root(a, b, c):
+    """The least positive root of a t^2 + b t + c that is more than round-off; None if there is none."""
+    root = cmath.sqrt(b * b - 4 * a * c)
+    if root.real <= 0:
+        return None
+    roots = [t for t in ((-b - root) / (2 * a), (-b + root) / (2 * a)) if t.real > 1e-9]
+    return min(roots, key=lambda t: t.real) if roots else None
+
+
+def inclined(end, x, z, vx, g, V, cx, cz, r, ox, oz, nx, nz, e, m):
+    """A ball that bounces on an inclined plane, which moves at a constant rate; m does not matter."""
+    del m
+    length = cmath.sqrt(nx * nx + nz * nz)
+    nx, nz = nx / length, nz / length
+    vz, t = 0.2, 0
+    while True:
+        gap = (x + cx - ox - V * t) * nx + (z + cz - oz) * nz - r
+        rate = (vx - V) * nx + vz * nz
+        s = first_root(g * nz / 2, rate, gap)
+        last = s is None or (t + s).real >= end
+        s = end - t if last else s
+        x, z, vz, t = x + vx * s, z + vz * s + g * s * s / 2, vz + g * s, t + s
+        if last:
+            return x, vx, z, vz
+        rate = (vx - V) * nx + vz * nz
+        vx, vz = vx - (1 + e) * rate * nx, vz - (1 + e) * rate * nz
+
+
+@pytest.mark.parametrize('end, impacts', [(1.0, 1), (1.5, 2), (2.2, 4)])
+def test_a_ball_on_an_inclined_plane_that_moves(checks, mech9d, tmp_path, end, impacts):
+    """By its start, gravity, the rate of the plane, the place of its centre on the link, its radius, the plane and the restitution."""
+    at = {'x': 0.3, 'z': 0.9, 'vx': 0.6, 'g': -9.81, 'V': 0.4, 'cx': 0.1, 'cz': 0.2, 'r': 0.3, 'ox': 0.2, 'oz': -0.5, 'nx': -0.5, 'nz': 2,
+          'e': 0.7, 'm': 2}
+    # tolerance: that of the integration, 1e-12, times the slopes of the motion over several impacts
+    report = against_complex(checks, mech9d, tmp_path, INCLINED, inclined, at, end, 2e-9)
+    checks.equal([event['kind'] for event in report['events']], ['impact'] * impacts, 'impacts alone')
+
+
+def two_balls(end, x, y, v, m, M, r, R, e):
+    """Two balls that meet once, without gravity."""
+    p, q, u, w = [x, 0.2], [1.5, y], [1, 0.3], [v, 0.1]
+    d, c = [p[i] - q[i] for i in (0, 1)], [u[i] - w[i] for i in (0, 1)]
+    t = first_root(c[0]**2 + c[1]**2, 2 * (d[0] * c[0] + d[1] * c[1]), d[0]**2 + d[1]**2 - (r + R)**2)
+    n = [(d[i] + c[i] * t) / (r + R) for i in (0, 1)]
+    push = -(1 + e) * (n[0] * c[0] + n[1] * c[1]) / (1 / m + 1 / M)
+    values = []
+    for place, rate, mass, sign, i in ((p, u, m, 1, 0), (p, u, m, 1, 1), (q, w, M, -1, 0), (q, w, M, -1, 1)):
+        behind = rate[i] + sign * push * n[i] / mass
+        values += [place[i] + rate[i] * t + behind * (end - t), behind]
+    return values
+
+
+def test_two_balls_that_meet(checks, mech9d, tmp_path):
+    """By places, rates, masses, radii and the restitution: both links move."""
+    at = {'x': 0, 'y': 0.5, 'v': -0.5, 'm': 2, 'M': 3, 'r': 0.3, 'R': 0.5, 'e': 0.6}
+    against_complex(checks, mech9d, tmp_path, TWO_BALLS, two_balls, at, 1.3, 1e-10, ('q1', 'dq1', 'q2', 'dq2', 'q3', 'dq3', 'q4', 'dq4'))
+
+
+def runge_kutta(rates, state, h):
+    """One step of the classical method."""
+    k1 = rates(state)
+    k2 = rates([s + h / 2 * k for s, k in zip(state, k1)])
+    k3 = rates([s + h / 2 * k for s, k in zip(state, k2)])
+    k4 = rates([s + h * k for s, k in zip(state, k3)])
+    return [s + h / 6 * (a + 2 * b + 2 * c + d) for s, a, b, c, d in zip(state, k1, k2, k3, k4)]
+
+
+def integrate(rates, left, state, end, h):
+    """Integrate until a function of the state passes zero, or to the end: the state, and the time that is left."""
+    t = 0
+    while (end - t).real > h:
+        after = runge_kutta(rates, state, h)
+        if left(after).real <= 0:
+            step = h / 2
+            for _ in range(60):
+                value, near = left(runge_kutta(rates, state, step)), left(runge_kutta(rates, state, step + 1e-6))
+                step -= value / ((near - value) / 1e-6)
+            return runge_kutta(rates, state, step), end - t - step
+        state, t = after, t + h
+    return runge_kutta(rates, state, end - t), 0
+
+
+def drop(end, h, m, r, k, c, n):
+    """A ball that falls on a compliant floor, and rebounds."""
+    g = 9.81
+    t = cmath.sqrt(2 * (h - r) / g)
+
+    def rates(state):
+        depth = r - state[0]
+        force = depth**n * (k - c * state[1]) if complex(depth).real > 0 else 0
+        return [state[1], force / m - g]
+
+    state, left = integrate(rates, lambda s: r - s[0] + (1 if s[1].real < 0 else 0), [r, -g * t], end - t, 1e-5)
+    return state[0] + state[1] * left - g * left**2 / 2, state[1] - g * left
+
+
+@pytest.mark.parametrize('end', [0.3, 0.35])
+def test_a_compliant_floor(checks, mech9d, tmp_path, end):
+    """The force of Hunt and Crossley while it presses, and behind it: by the height, the mass, the radius and the numbers of the contact."""
+    at = {'h': 0.5, 'm': 2, 'r': 0.1, 'k': 8000, 'c': 3000, 'n': 1.5}
+    # tolerance: the power 1.5 limits the independent integration, whose steps are 1e-5 s
+    report = against_complex(checks, mech9d, tmp_path, DROP, drop, at, end, 1e-7, ('q1', 'dq1'))
+    checks.equal(report['events'][0]['kind'], 'close', 'it is met')
+
+
+def hill(end, x, z, r, R, g, m):
+    """A ball that falls on a sphere without rebound, slides down without friction and lifts off; m does not matter."""
+    del m
+    length = r + R
+    turn = cmath.asin(x / length)
+    t = cmath.sqrt(2 * (z - length * cmath.cos(turn)) / -g)
+    state, left = integrate(lambda s: [s[1], -g / length * cmath.sin(s[0])], lambda s: -g * cmath.cos(s[0]) - length * s[1]**2,
+                            [turn, -g * t * cmath.sin(turn) / length], end - t, 1e-4)
+    angle, rate = state
+    vx, vz = length * rate * cmath.cos(angle), -length * rate * cmath.sin(angle)
+    return (length * cmath.sin(angle) + vx * left, vx, length * cmath.cos(angle) + vz * left + g * left**2 / 2, vz + g * left)
+
+
+@pytest.mark.parametrize('end, found', [(0.4, ['impact', 'close']), (0.9, ['impact', 'close', 'lift'])])
+def test_a_ball_that_slides_down_a_sphere(checks, mech9d, tmp_path, end, found):
+    """A closed contact, from its impact to its lifting off, by the start, both radii and gravity."""
+    at = {'x': 0.2, 'z': 1.1, 'r': 0.2, 'R': 0.8, 'g': -9.81, 'm': 2}
+    # tolerance: that of the integration over an impact without rebound, behind which errors of rates grow
+    report = against_complex(checks, mech9d, tmp_path, HILL, hill, at, end, 3e-8)
+    checks.equal([event['kind'] for event in report['events']], found, 'the events of the case')
+
+
+BALL_AT_ROCKER = """&point name='T', link=4, position=1,0,0 /
+&contact point='T', kind='sphere', origin=0.2,0.3,0, radius=0.05, other_radius=0.08, restitution=0.7 /
+&parameter name='e', sets='contact(1).restitution' /
+&parameter name='R', sets='contact(1).other_radius' /
+&parameter name='px', sets='point(1).position(1)' /
+&parameter name='oy', sets='contact(1).origin(2)' /
+"""
+#: The four-bar of the stops, whose rocker hits a ball of the frame in place of a stop.
+ROCKER = '\n'.join(line for line in FOUR_BAR.splitlines() if 'stop' not in line) + '\n' + BALL_AT_ROCKER
+#: A double pendulum in space with skew axes, whose lower link hits a plane of a third link that swings, and slides on it.
+SKEW = """&structure cq=1,2,3 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,1,0.2 /
+&pair coordinate=2, links=2,3, kind='revolute', point=0.5,0,0, axis=0.1,0.9,0.4 /
+&pair coordinate=3, links=1,4, kind='revolute', point=0,0,-0.9, axis=0.3,1,0 /
+&body link=2, mass=1, centre=0.25,0,0, inertia=0.01,0.03,0.03,0,0,0 /
+&body link=3, mass=0.7, centre=0.8,0,0, inertia=0.01,0.02,0.02,0,0,0 /
+&body link=4, mass=2, centre=0.1,0,-0.9, inertia=0.1,0.2,0.2,0,0,0 /
+&gravity acceleration=0,0,-9.81 /
+&load kind='coordinate', coordinate=3, stiffness=60, damping=2 /
+&point name='T', link=3, position=1,0.1,0 /
+&contact point='T', link=4, radius=0.05, origin=0,0,-0.8, normal=0.1,-0.2,1, restitution=0.3 /
+&initial coordinate=1, position=0 /
+&initial coordinate=2, position=0.3 /
+&initial coordinate=3, position=0 /
+&parameter name='m', sets='body(1).mass' /
+&parameter name='l', sets='pair(2).point(1)' /
+&parameter name='a', sets='pair(3).axis(1)' /
+&parameter name='px', sets='point(1).position(2)' /
+&parameter name='r', sets='contact(1).radius' /
+&parameter name='ny', sets='contact(1).normal(2)' /
+&parameter name='oz', sets='contact(1).origin(3)' /
+&parameter name='w', sets='initial(2).position' /
+"""
+#: A cam that turns freely, and a follower with a roller, which a spring presses onto it.
+CAM = """&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=1,3, kind='prismatic', axis=0,1,0 /
+&body link=2, mass=1, inertia=0,0,0.004,0,0,0 /
+&body link=3, mass=0.3 /
+&load kind='coordinate', coordinate=2, stiffness=400 /
+&point name='T', link=3, position=0.01,0,0 /
+&contact point='T', link=2, kind='path', file='cam.dat', radius=0.02 /
+&initial coordinate=1, position=0, velocity=6 /
+&initial coordinate=2, position=0.15 /
+&parameter name='m', sets='body(2).mass' /
+&parameter name='k', sets='load(1).stiffness' /
+&parameter name='r', sets='contact(1).radius' /
+&parameter name='px', sets='point(1).position(1)' /
+&parameter name='w', sets='initial(1).velocity' /
+&parameter name='ox', sets='contact(1).origin(1)' /
+"""
+
+
+def with_cam(folder, text):
+    """Write the path of a smooth cam, and give the text of the data file."""
+    turns = [cmath.rect(1, 2 * cmath.pi * i / 40) for i in range(40)] + [1]
+    places = [z * (0.1 + 0.012 * (z * z).real + 0.015 * z.real) for z in turns]
+    (folder / 'cam.dat').write_text(''.join(f'{complex(z).real!r} {complex(z).imag!r}\n' for z in places))
+    return text.replace('contact point', "contact origin=0,0,0, point")
+
+
+@pytest.mark.parametrize('case, text, columns, end, found', [
+    ('impacts', ROCKER, ('q1', 'dq1', 'q4', 'dq4'), 0.7, ('impact', 1)),
+    ('rest', ROCKER.replace('restitution=0.7', 'restitution=0.3'), ('q1', 'dq1', 'q4', 'dq4', 'ddq1', 'R4.fx', 'R1.fy'), 1.0, ('close', 1)),
+    ('compliant', ROCKER.replace('restitution=0.7', 'stiffness=2e4, damping=50, exponent=1.5').replace(
+        "&parameter name='e', sets='contact(1).restitution' /", "&parameter name='n', sets='contact(1).exponent' /"),
+     ('q1', 'dq1', 'q4', 'dq4', 'R4.fx', 'E.potential'), 0.7, ('close', 1)),
+    ('skew', SKEW, ('q1', 'dq1', 'q2', 'dq2', 'q3', 'dq3'), 0.6, ('impact', 1)),
+    ('skew rest', SKEW.replace('restitution=0.3', 'restitution=0'), ('q1', 'dq1', 'q2', 'dq2', 'q3', 'dq3', 'R1.mz', 'R3.fx'), 0.6,
+     ('close', 1)),
+    ('cam', CAM, ('q1', 'dq1', 'q2', 'dq2'), 0.5, ('close', 1))], ids=['impacts', 'rest', 'compliant', 'skew', 'skew rest', 'cam'])
+def test_several_coordinates(checks, mech9d, tmp_path, case, text, columns, end, found):
+    """A rocker of a closed chain that bounces and rests on a ball, rigid and compliant; a double pendulum in space on a plane that swings;
+    a cam with its follower."""
+    output = COLUMNS
+    if any(name[0] in 'RE' for name in columns):
+        output = COLUMNS.replace(' /', ', energies=.true., drive_forces=.true., reactions=.true. /')
+    if case == 'cam':
+        text = with_cam(tmp_path, text)
+    report = against_differences(checks, mech9d, tmp_path, text, columns, end, 6, output)
+    checks.true(found in kinds(report), 'the event of the case', kinds(report))
