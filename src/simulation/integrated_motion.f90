@@ -542,6 +542,7 @@ contains
 
     self%t = t
     self%y = y
+    call self%aside%forget()
     call self%system%resume(nothing)
     call self%system%move_to(self%t, self%y, err)
     if (.not. allocated(err)) call self%system%pass_limits(err)

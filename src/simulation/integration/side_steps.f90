@@ -14,10 +14,12 @@ module mech9_side_steps
     private
     type(integrator_type) :: integrator
     logical :: begun = .false.
+    logical :: is_on_the_way = .false.                !< it stands on the motion of the last step
     real(wp), public :: t = 0.0_wp                    !< end of the last side step [s]
     real(wp), allocatable, public :: y(:)             !< there
   contains
     procedure :: reach
+    procedure :: forget
     procedure :: statistics
     procedure :: close => close_side_steps
   end type side_steps_type
@@ -63,7 +65,7 @@ contains
     logical :: goes_on
 
     expectation = system%work%expectation
-    goes_on = self%begun .and. (self%t - from)*(t - self%t) >= 0.0_wp
+    goes_on = self%begun .and. self%is_on_the_way .and. (self%t - from)*(t - self%t) >= 0.0_wp
     if (.not. self%begun) call begin_integration(self%integrator, system, from, y, err)
     self%begun = .true.
     if (.not. (goes_on .or. allocated(err))) then
@@ -71,11 +73,19 @@ contains
       self%t = from
       self%y = y
     end if
+    self%is_on_the_way = .true.
     do while (.not. allocated(err) .and. abs(t - self%t) > 0.0_wp)
       call self%integrator%step(t, self%t, self%y, err)
     end do
     call system%resume(expectation)
   end subroutine reach
+
+  !> Forget where earlier side steps ended: an event has changed the motion, which does not go on there.
+  pure subroutine forget(self)
+    class(side_steps_type), intent(inout) :: self   !< the side steps
+
+    self%is_on_the_way = .false.
+  end subroutine forget
 
   !> The statistics of the side steps.
   function statistics(self)
