@@ -2,6 +2,7 @@
 module mech9_driven_simulation
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
+  use mech9_law, only: repetition_type, repeats_after
   use mech9_model, only: model_type
   use mech9_motion_view, only: motion_view_type
   use mech9_plan, only: plan_type, copy_plan
@@ -53,7 +54,11 @@ module mech9_driven_simulation
 
   !> Longest way of a drive within a stride, in the unit of its coordinate, and halvings of a longer one.
   real(wp), parameter :: longest_way = 0.1_wp
+  !> Longest way of a drive between two looks at the gaps of stops and contacts.
+  real(wp), parameter :: longest_unseen = 0.25_wp
   integer, parameter :: most_halvings = 60
+  !> A way is at most this part of the period of a drive, which may be far smaller than the unit of its coordinate.
+  real(wp), parameter :: part_of_period = 0.125_wp
 
 contains
 
@@ -121,19 +126,25 @@ contains
     class(driven_simulation_type), intent(inout) :: self   !< the simulation
     real(wp), intent(in) :: t                              !< time to go to [s]
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
-    real(wp) :: before
+    real(wp) :: before, next
     logical :: reached
 
-    before = self%driven%state%t
     do
-      call advance_with_angles(self%model, self%plan, t, self%driven, self%angles, reached, err)
-      if (allocated(err)) return
-      if (reached) exit
-      call self%stop_if_interrupted(self%driven%predictor%t, err)
-      if (allocated(err)) return
+      before = self%driven%state%t
+      next = t
+      if (self%model%mechanism%has_rigid_ends()) next = end_of_way(self, before, t, longest_unseen)
+      do
+        call advance_with_angles(self%model, self%plan, next, self%driven, self%angles, reached, err)
+        if (allocated(err)) return
+        if (reached .and. .not. abs(t - next) > 0.0_wp) exit
+        call self%stop_if_interrupted(self%driven%predictor%t, err)
+        if (allocated(err)) return
+        if (reached) exit
+      end do
+      if (self%model%mechanism%has_rigid_ends()) &
+        call check_stops(self%model, self%plan, self%angles%held%drives, self%driven, before, self%contacts, err)
+      if (allocated(err) .or. .not. abs(t - next) > 0.0_wp) exit
     end do
-    if (self%model%mechanism%has_rigid_ends()) &
-      call check_stops(self%model, self%plan, self%angles%held%drives, self%driven, before, self%contacts, err)
     if (allocated(self%frictions) .and. .not. allocated(err)) call find_frictions(self, err)
   end subroutine go_to
 
@@ -145,21 +156,42 @@ contains
     real(wp), intent(inout) :: to                          !< end of the way before; then of this one [s]
     logical, intent(out) :: at_joint                       !< rates may jump at its end: never told
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
-    real(wp) :: h, next
-    integer :: halving
+    real(wp) :: next
 
     at_joint = .false.
     from = to
-    h = t - from
-    do halving = 1, most_halvings
-      if (farthest_way(self, from, h) <= longest_way) exit
-      h = 0.5_wp*h
-    end do
-    next = merge(t, from + h, halving == 1)
+    next = end_of_way(self, from, t, longest_way)
     call self%stop_if_interrupted(next, err)
     if (.not. allocated(err)) call self%go_to(next, err)
     if (.not. allocated(err)) to = next
   end subroutine stride
+
+  !> The end of a way towards a time, on which no drive moves farther than a given way, turns back twice, or passes a joint of its law.
+  real(wp) function end_of_way(self, from, t, longest) result(next)
+    class(driven_simulation_type), intent(in) :: self      !< the simulation
+    real(wp), intent(in) :: from                           !< start of the way [s]
+    real(wp), intent(in) :: t                              !< the time [s]
+    real(wp), intent(in) :: longest                        !< longest way, in the units of the coordinates
+    type(repetition_type) :: repetition
+    real(wp) :: h, joint
+    integer :: halving, i
+
+    h = t - from
+    next = t
+    do i = 1, size(self%model%problem%drives)
+      associate (drive => self%model%problem%drives(i)%drive)
+        repetition = drive%repetition()
+        if (repetition%kind == repeats_after) h = sign(min(abs(h), part_of_period*repetition%period), h)
+        joint = drive%next_joint(from, sign(1.0_wp, h)) - from
+        if (abs(joint) < abs(h)) h = joint
+      end associate
+    end do
+    do halving = 1, most_halvings
+      if (farthest_way(self, from, h) <= longest) exit
+      h = 0.5_wp*h
+    end do
+    if (abs(h) < abs(t - from) .and. abs(from + h - from) > 0.0_wp) next = from + h
+  end function end_of_way
 
   !> A bound of the way of all drives within a time, in the units of their coordinates.
   real(wp) function farthest_way(self, from, h) result(way)

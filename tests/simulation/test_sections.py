@@ -172,6 +172,18 @@ def test_driven_motions(checks, mech9k, tmp_path):
     checks.near(points['t'], (2 * pi * np.arange(len(points['t'])) + pi / 2 - 0.1) / 3, 1e-13, 'in degrees', scale=20)
 
 
+@pytest.mark.parametrize('amplitude', [1, 1e-3, 1e-6])
+def test_a_small_drive(checks, mech9k, tmp_path, amplitude):
+    """A drive that swings by little beside the size of the mechanism: all points between two outputs."""
+    text = f"""&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&point name='P', link=2, position=1,0,0 /
+&drive coordinate=1, kind='harmonic', amplitude={amplitude!r}, angular_frequency=20 /
+"""
+    points, _, _ = go(mech9k, tmp_path, text, f'coordinate=1, value={amplitude/2!r}', 10.0, 1)
+    checks.near(points['t'], (pi / 6 + 2 * pi * np.arange(32)) / 20, 1e-12, 'times', scale=10)
+
+
 def test_a_closed_chain_changes_its_coordinates(checks, mech9d, tmp_path):
     """A four-bar whose heavy rocker swings, integrated by its crank through dead points, and by its rocker: one section."""
     first = '&structure cq=1 /\n&initial coordinate=1, position=0.5, velocity=1 /\n&initial coordinate=4, position=1.7 /\n' + FOUR_BAR
