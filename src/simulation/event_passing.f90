@@ -11,6 +11,7 @@ module mech9_event_passing
   use mech9_hermite, only: hermite_type, build_hermite, cubic_between
   use mech9_integrated_motion, only: integrated_motion_type
   use mech9_event_search, only: locate, value_at, of_motor, of_contact, of_rate
+  use mech9_value_passing, only: find_passing
   use mech9_friction_passing, only: find_friction, find_rubbing
   use mech9_smooth_parts, only: gap_look_type, smooth_parts_type, begin_parts
   use mech9_stop_contacts, only: gap_motion, gap_acceleration, look_at_gap
@@ -24,7 +25,7 @@ module mech9_event_passing
   integer, parameter :: looks = 16
 
   !> Corrections of a time by Newton's method, and the largest one in parts of the step.
-  integer, parameter :: most_corrections = 3
+  integer, parameter :: most_corrections = 8
   real(wp), parameter :: largest_correction = 0.5_wp
 
 contains
@@ -195,7 +196,7 @@ contains
     do i = 1, size(motion%contacts%ends)
       jumps = .false.
       if (motion%contacts%ends(i)%held) then
-        call find_release(motion, i, from, found_at, passed, err)
+        call find_passing(motion, of_contact, i, from, found_at, passed, err)
       else
         call find_first_meeting(motion, i, looks(i, 1), looks(i, 2), found_at, passed, jumps, err)
       end if
@@ -216,29 +217,6 @@ contains
       end do
     end subroutine keep
   end subroutine find_contact
-
-  !> Find the time at which a held end no longer pushes. Its force is looked at in the middle of the step where it changes as much as it is.
-  subroutine find_release(motion, i, from, t, passed, err)
-    type(integrated_motion_type), intent(inout) :: motion   !< the motion at the end of a step
-    integer, intent(in) :: i                                !< number of the end
-    real(wp), intent(in) :: from                            !< start of the step [s]
-    real(wp), intent(out) :: t                              !< time of the release [s]
-    logical, intent(out) :: passed                          !< it is released within the step
-    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    real(wp) :: at_end, middle
-
-    t = motion%t
-    call value_at(motion, of_contact, i, t, at_end, err)
-    if (allocated(err)) return
-    passed = at_end > 0.0_wp
-    if (max(at_end, -motion%contacts%force(i)) > -abs(at_end + motion%contacts%force(i))) then
-      call value_at(motion, of_contact, i, 0.5_wp*(from + motion%t), middle, err)
-      if (allocated(err)) return
-      if (middle > 0.0_wp) t = 0.5_wp*(from + motion%t)
-      passed = passed .or. middle > 0.0_wp
-    end if
-    if (passed) call locate(motion, of_contact, i, from, t, passed, err)
-  end subroutine find_release
 
   !> The motion of a gap in the state of the system.
   pure function present_look(motion, i) result(look)

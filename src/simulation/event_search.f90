@@ -8,17 +8,19 @@ module mech9_event_search
   use mech9_false_position, only: false_position_type, new_false_position
   use mech9_motion_view, only: link_motion_type
   use mech9_contact, only: contact_place_type
-  use mech9_contact_motion, only: place_of_contact
+  use mech9_contact_motion, only: place_of_contact, acceleration_of_contact
   use mech9_stop_contacts, only: gap_motion
   use mech9_integrated_motion, only: integrated_motion_type
   implicit none
   private
-  public :: locate, value_at, of_motor, of_contact, of_rate, of_friction, of_paradox, of_rubbing
+  public :: locate, value_at, of_motor, of_contact, of_rate, of_friction, of_paradox, of_rubbing, of_turn, of_rubbing_turn, &
+    slip_acceleration
 
   !> Values that are zero at a time that is searched: the excess of a motor, the passing of an end of a stop, the rate of its coordinate,
-  !> how far a pair with friction is beyond its present mode, minus the determinant of frictions, and how far the friction of a contact of
-  !> links is beyond its present mode.
-  integer, parameter :: of_motor = 1, of_contact = 2, of_rate = 3, of_friction = 4, of_paradox = 5, of_rubbing = 6
+  !> how far a pair with friction is beyond its present mode, minus the determinant of frictions, how far the friction of a contact of
+  !> links is beyond its present mode, and the acceleration of a pair and of a contact that slip, along the slip.
+  integer, parameter :: of_motor = 1, of_contact = 2, of_rate = 3, of_friction = 4, of_paradox = 5, of_rubbing = 6, of_turn = 7, &
+                        of_rubbing_turn = 8
   !> Trials of the search for a time.
   integer, parameter :: most_trials = 100
 
@@ -88,6 +90,10 @@ contains
       end associate
     case (of_rubbing)
       value = passing_of_rubbing(motion, i)
+    case (of_turn)
+      value = slip_acceleration(motion, of_friction, i)
+    case (of_rubbing_turn)
+      value = slip_acceleration(motion, of_rubbing, i)
     case default
       gap = gap_motion(motion%system%model%mechanism, motion%system%plan, motion%system%state, motion%contacts%ends(i))
       value = gap(2)
@@ -135,6 +141,22 @@ contains
       end if
     end associate
   end function passing_of_rubbing
+
+  !> The acceleration of a pair or of a contact of links that slips, along its slip, in the state of the system.
+  pure real(wp) function slip_acceleration(motion, what, i) result(acceleration)
+    type(integrated_motion_type), intent(in) :: motion   !< the motion
+    integer, intent(in) :: what                          !< of_friction, or of_rubbing for a contact of links
+    integer, intent(in) :: i                             !< number of the friction, or of the contact
+
+    associate (system => motion%system)
+      if (what == of_friction) then
+        acceleration = system%friction%modes%direction(i)*system%state%ddq(system%model%mechanism%frictions(i)%coordinate)
+      else
+        acceleration = dot_product(system%contact%direction(:, i), &
+                                   acceleration_of_contact(system%model%mechanism%contacts(i), system%plan, system%state))
+      end if
+    end associate
+  end function slip_acceleration
 
   !> How far a pair with friction is beyond its present mode, in the state of the system: above zero where it should act otherwise.
   pure real(wp) function passing_of_friction(motion, i) result(value)

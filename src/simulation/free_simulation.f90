@@ -362,8 +362,8 @@ contains
       if (motion%conditioning_here > regular_conditioning .and. .not. self%steps_onto .and. &
         (self%end - t)*(t - motion%t) > 0.0_wp) &
         farthest = self%end
-      if (motion%system%any_sticks()) then
-        ! steps do not see the loads on pairs that stick, which may change with time
+      if (motion%system%any_sticks() .or. motion%contacts%any_held()) then
+        ! steps do not see the loads on what is held, which may change with time
         associate (time => self%model%request%time)
           longest = longest_stick*merge(time%end - time%start, farthest - motion%t, abs(time%end - time%start) > 0.0_wp)
         end associate

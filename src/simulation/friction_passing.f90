@@ -10,19 +10,15 @@ module mech9_friction_passing
   use mech9_friction_events, only: fail_in_paradox
   use mech9_hermite, only: cubic_between
   use mech9_integrated_motion, only: integrated_motion_type
-  use mech9_event_search, only: locate, value_at, of_friction, of_paradox, of_rubbing
+  use mech9_event_search, only: locate, value_at, of_friction, of_paradox, of_rubbing, of_turn, of_rubbing_turn, &
+    slip_acceleration
+  use mech9_value_passing, only: find_passing, find_before
   implicit none
   private
   public :: find_friction, find_rubbing
 
   !> Points within a step at which rates and utilizations are looked at; the last one is its end.
   integer, parameter :: looks = 16
-  !> Places within a step at which a utilization is looked at: a load that swings does not have all of them in one phase. Divisions of the
-  !> step where it does not change evenly.
-  real(wp), parameter :: looks_within(3) = [0.29_wp, 0.53_wp, 0.81_wp]
-  integer, parameter :: deepest = 8
-  !> Halvings on the way back to the start of a step, where a pair began to slip or to stick.
-  integer, parameter :: most_halvings = 30
 
 contains
 
@@ -56,7 +52,7 @@ contains
           call find_rest(motion, of_friction, i, from, modes%direction(i)*dq(i, :), modes%direction(i)*ddq(i, :), found_at, &
                          passed, err)
         else if (modes%group(i) == 0 .or. modes%leads(i)) then
-          call find_slip(motion, of_friction, i, from, found_at, passed, err)
+          call find_passing(motion, of_friction, i, from, found_at, passed, err)
         else
           cycle
         end if
@@ -108,7 +104,7 @@ contains
       associate (contact => motion%system%contact)
         if (.not. (contact%acts(i) .and. motion%system%model%mechanism%contacts(i)%has_friction())) cycle
         if (contact%sticks(i)) then
-          call find_slip(motion, of_rubbing, i, from, found_at, passed, err)
+          call find_passing(motion, of_rubbing, i, from, found_at, passed, err)
         else
           call find_rest(motion, of_rubbing, i, from, rate(i, :), acceleration(i, :), found_at, passed, err)
         end if
@@ -136,7 +132,7 @@ contains
     end subroutine keep
   end subroutine find_rubbing
 
-  !> Find the time at which the rate of a pair or a contact that slips vanishes.
+  !> Find the time at which the rate of a pair or a contact that slips vanishes, also where it turns back at once.
   subroutine find_rest(motion, what, i, from, rate, acceleration, t, passed, err)
     type(integrated_motion_type), intent(inout) :: motion   !< the motion at the end of a step
     integer, intent(in) :: what                             !< of_friction, or of_rubbing for a contact of links
@@ -147,7 +143,7 @@ contains
     real(wp), intent(out) :: t                              !< the time [s]
     logical, intent(out) :: passed                          !< it lies within the step
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    real(wp) :: h, before, x, value, at, least, round_off, size_of_position, backwards
+    real(wp) :: h, before, x, value, at, least, round_off, size_of_position, backwards, slope, slope_before, error_of_step
     integer :: look
     logical :: leaves
 
@@ -173,115 +169,63 @@ contains
       if (what == of_rubbing) backwards = slip_of_errors*size_of_position/max(abs(time%end - time%start), abs(h))
     end associate
     if (rate(1) > backwards) backwards = 0.0_wp
+    ! a change of sign below the error of a step is none
+    associate (solver => motion%system%model%request%solver)
+      error_of_step = solver%absolute_tolerance + solver%relative_tolerance*maxval(abs(rate))
+    end associate
+    slope_before = h*acceleration(1)
     do look = 1, looks
       x = real(look, wp)/looks
       t = from + x*h
       if (look == looks) t = motion%t
       at = cubic_between(rate(1), h*acceleration(1), rate(2), h*acceleration(2), x)
       if (look == looks) at = rate(2)
-      if (at > merge(0.0_wp, least, look == looks)) then
+      if (at > least) then
         leaves = .false.
         before = t
+        slope_before = 0.0_wp
         cycle
       end if
       call value_at(motion, what, i, t, value, err)
       if (allocated(err)) return
+      slope = h*slip_acceleration(motion, what, i)
+      if (look == looks) value = -rate(2)
       leaves = leaves .and. value >= 0.0_wp
       passed = value > backwards + merge(0.0_wp, round_off, look == looks) .and. .not. leaves
       if (passed) exit
+      if (slope_before < 0.0_wp .and. slope > 0.0_wp .and. .not. leaves) then
+        call look_at_turn(motion, what, i, before, backwards + round_off + error_of_step, t, passed, err)
+        if (allocated(err)) return
+        if (passed) exit
+      end if
       before = t
+      slope_before = slope
     end do
     if (.not. passed) return
     call find_before(motion, what, i, from, before, t, err)
     if (.not. allocated(err)) call locate(motion, what, i, before, t, passed, err)
   end subroutine find_rest
 
-  !> Find a time at which a pair is in its present mode, before one at which it is not: a pair that just began to slip has no rate.
-  subroutine find_before(motion, what, i, from, before, t, err)
+  !> Look whether a rate that turns back between two times has changed its sign there.
+  subroutine look_at_turn(motion, what, i, before, margin, t, passed, err)
     type(integrated_motion_type), intent(inout) :: motion   !< the motion at the end of a step
     integer, intent(in) :: what                             !< of_friction, or of_rubbing for a contact of links
     integer, intent(in) :: i                                !< number of the friction, or of the contact
-    real(wp), intent(in) :: from                            !< start of the step [s]
-    real(wp), intent(inout) :: before                       !< a time before [s]
-    real(wp), intent(inout) :: t                            !< a time behind; perhaps an earlier one then [s]
+    real(wp), intent(in) :: before                          !< time before the turn [s]
+    real(wp), intent(in) :: margin                          !< the rate beyond zero that does not count [rad/s, m/s]
+    real(wp), intent(inout) :: t                            !< time behind it; where the sign changes, the time of the turn [s]
+    logical, intent(out) :: passed                          !< the sign changes
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    real(wp) :: value
-    integer :: halving
+    real(wp) :: turn, value
 
-    if (abs(before - from) > 0.0_wp) return
-    before = t
-    do halving = 1, most_halvings
-      before = from + 0.5_wp*(before - from)
-      call value_at(motion, what, i, before, value, err)
-      if (allocated(err) .or. value < 0.0_wp) return
-      t = before
-    end do
-    before = from
-  end subroutine find_before
-
-  !> Find the time at which a pair that sticks is at its bound, or one at rest begins to move. Where the utilization does not change evenly,
-  !> the step is looked at in more places.
-  subroutine find_slip(motion, what, i, from, t, passed, err)
-    type(integrated_motion_type), intent(inout) :: motion   !< the motion at the end of a step
-    integer, intent(in) :: what                             !< of_friction, or of_rubbing for a contact of links
-    integer, intent(in) :: i                                !< number of the friction, or of the contact
-    real(wp), intent(in) :: from                            !< start of the step [s]
-    real(wp), intent(out) :: t                              !< the time [s]
-    logical, intent(out) :: passed                          !< it lies within the step
-    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    real(wp) :: first, last, before
-
-    passed = .false.
-    t = motion%t
-    call value_at(motion, what, i, from, first, err)
-    if (.not. allocated(err)) call value_at(motion, what, i, motion%t, last, err)
-    if (allocated(err)) return
-    before = from
-    call look_within(from, first, motion%t, last, 0)
+    turn = t
+    call locate(motion, merge(of_turn, of_rubbing_turn, what == of_friction), i, before, turn, passed, err)
     if (.not. passed .or. allocated(err)) return
-    call find_before(motion, what, i, from, before, t, err)
-    if (.not. allocated(err)) call locate(motion, what, i, before, t, passed, err)
-  contains
-    !> Look for the first time between two ones at which the value is above zero.
-    recursive subroutine look_within(a, value_a, b, value_b, depth)
-      real(wp), intent(in) :: a         !< the first time [s]
-      real(wp), intent(in) :: value_a   !< there
-      real(wp), intent(in) :: b         !< the second time [s]
-      real(wp), intent(in) :: value_b   !< there
-      integer, intent(in) :: depth      !< halvings so far
-      real(wp) :: times(3), values(3), deviation
-      integer :: k
-
-      times = a + looks_within*(b - a)
-      values = -1.0_wp
-      deviation = 0.0_wp
-      do k = 1, 3
-        call value_at(motion, what, i, times(k), values(k), err)
-        if (allocated(err)) return
-        deviation = max(deviation, abs(values(k) - (value_a + looks_within(k)*(value_b - value_a))))
-        if (values(k) > 0.0_wp) exit
-      end do
-      k = min(k, 3)
-      if (values(k) <= 0.0_wp .and. depth < deepest .and. max(maxval(values), value_a, value_b) + 4.0_wp*deviation > 0.0_wp .and. &
-          deviation > 1.0e-6_wp) then
-        call look_within(a, value_a, times(1), values(1), depth + 1)
-        if (.not. (passed .or. allocated(err))) call look_within(times(1), values(1), times(2), values(2), depth + 1)
-        if (.not. (passed .or. allocated(err))) call look_within(times(2), values(2), times(3), values(3), depth + 1)
-        if (.not. (passed .or. allocated(err))) call look_within(times(3), values(3), b, value_b, depth + 1)
-        return
-      end if
-      if (values(k) > 0.0_wp) then
-        passed = .true.
-        before = a
-        if (k > 1) before = times(k - 1)
-        t = times(k)
-      else if (value_b > 0.0_wp) then
-        passed = .true.
-        before = times(3)
-        t = b
-      end if
-    end subroutine look_within
-  end subroutine find_slip
+    call value_at(motion, what, i, turn, value, err)
+    if (allocated(err)) return
+    passed = value > margin
+    if (passed) t = turn
+  end subroutine look_at_turn
 
   !> Find the time from which on frictions have no solution or several. The system stands at the end of the step before.
   subroutine find_paradox(motion, from, t, passed, err)

@@ -82,6 +82,32 @@ def test_dry_oscillator(checks, mech9d, tmp_path):
     checks.true(few == many == events, 'events do not depend on the outputs')
 
 
+@pytest.mark.parametrize(('speed', 'mass', 'stiffness', 'static', 'dynamic'),
+                         [(1.0, 3, 900, 0.6, 0.59), (0.5, 2, 100, 0.3, 0.299), (0.5, 2, 100, 0.3, 0.2)])
+def test_a_block_on_a_belt_sticks_each_time(checks, mech9d, tmp_path, speed, mass, stiffness, static, dynamic):
+    """A block on a belt that a spring holds slips and sticks in turn. With coefficients close to each other it rests on the belt for a
+    small part of a step only; else it would go on to swing, which is another motion."""
+    text = f"""&mechanism title='block on a belt' /
+&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&pair coordinate=2, links=2,3, kind='prismatic', axis=1,0,0 /
+&drive coordinate=1, kind='polynomial', coefficients=0, {speed} /
+&initial coordinate=2, position=0, velocity=0 /
+&body link=3, mass={mass} /
+&gravity acceleration=0,-9.81,0 /
+&load kind='spring', links=1,3, position=-1,0,0, stiffness={stiffness}, free_length=1 /
+&friction coordinate=2, static={static}, dynamic={dynamic} /
+""" + TIGHT
+    w, far, middle = sqrt(stiffness / mass), static*mass*G/stiffness, dynamic*mass*G/stiffness
+    slip = 2*(pi - atan((far - middle)*w/speed))/w
+    period = slip + 2*(far - middle)/speed
+    _, events, _ = go(mech9d, tmp_path, text, far/speed + 3.5*period, 2)
+    slips, sticks = (times(events, kind) for kind in ('slip', 'stick'))
+    sticks = sticks[sticks > 0]
+    checks.near(slips, far/speed + period*np.arange(4), 1e-8, 'it slips', scale=period)
+    checks.near(sticks, far/speed + slip + period*np.arange(3), 1e-8, 'it sticks', scale=period)
+
+
 def test_an_incline(checks, mech9d, tmp_path):
     """A slider on a slope of 30 degrees: it holds up to the tangent, and slides with g (sin - mu cos)."""
     a = radians(30)

@@ -3,7 +3,8 @@ coordinates, endless impacts, contacts that close and open, several at once, bes
 
 Compares the program with itself: one four-bar by three independent coordinates; few and many outputs; rigid and stiff stops."""
 import json
-from math import cos, pi, sin, sqrt, tan
+import re
+from math import asin, cos, pi, sin, sqrt, tan
 
 import numpy as np
 import pytest
@@ -61,6 +62,46 @@ def test_a_slider_bounces_to_rest(checks, mech9d, tmp_path):
     checks.near(table['S1'][table['t'] > 8.6], 2 * G, 1e-12, 'the slider rests by its weight')
     checks.equal(np.max(np.abs(table['q1'][table['t'] > 8.6])), 0.0, 'on the stop')
     checks.equal(table['S1'][table['t'] < 8.5].tolist(), [0.0] * 17, 'there is no force in flight')
+
+
+@pytest.mark.parametrize(('e', 'intervals'), [(0.9, 10), (0.99, 1), (0.99, 7)])
+def test_every_impact_is_that_of_a_parabola(checks, mech9d, tmp_path, e, intervals):
+    """Each impulse is e times the one before, wherever an impact lies between steps and outputs."""
+    _, events, _ = go(mech9d, tmp_path, SLIDER + f"&stop coordinate=1, low=0, restitution={e} /\n", 100.0, intervals)
+    impulses = np.array([event['impulse'] for event in events if event['kind'] == 'impact'])
+    # tolerance: the round-off of times of 90 s, in parts of flights of 1 ms and more
+    impulses = impulses[impulses > 0.01]
+    checks.near(impulses[1:]/impulses[:-1], np.full(len(impulses) - 1, e), 1e-9, 'ratios')
+    first = sqrt(2/G)
+    checks.near(times(events, 'close'), [first*(1 + e)/(1 - e)], 1e-10, 'they end', scale=90)
+
+
+@pytest.mark.parametrize(('frequency', 'excess'), [(1.0, 1.0001), (50.0, 1.001), (50.0, 1.01), (3.0, 1.1)])
+def test_a_force_that_swings_opens_a_stop(checks, mech9d, tmp_path, frequency, excess):
+    """A force that exceeds the weight for a small part of each of twenty periods opens the stop each time, in one output."""
+    text = SLIDER.replace('position=1', 'position=0') + TIGHT + f"""&stop coordinate=1, low=0 /
+&load kind='force', link=2, force=0,0,{excess*2*G!r}, law='harmonic', amplitude=1, angular_frequency={frequency!r} /
+"""
+    _, events, _ = go(mech9d, tmp_path, text, 40*pi/frequency, 1)
+    expected = (asin(1/excess) + 2*pi*np.arange(20))/frequency
+    # tolerance: near its top the force changes by round-off within 1e-8 of a period
+    checks.near(times(events, 'open'), expected, 1e-9, 'times', scale=40*pi/frequency)
+
+
+@pytest.mark.parametrize(('amplitude', 'frequency', 'intervals'), [(0.5, 10.0, 1), (0.5, 200.0, 7), (1e-3, 20.0, 1), (1e-5, 20.0, 3)])
+def test_a_drive_that_swings_passes_a_stop(checks, mech9k, mech9d, tmp_path, amplitude, frequency, intervals):
+    """The first passing is told however few outputs there are, and however small the drive is beside the mechanism."""
+    text = f"""&mechanism title='a drive that swings' /
+&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&point name='P', link=2, position=1,0,0 /
+&drive coordinate=1, kind='harmonic', amplitude={amplitude!r}, angular_frequency={frequency!r} /
+&stop coordinate=1, high={0.999*amplitude!r} /
+"""
+    for program in (mech9k, mech9d):
+        _, _, told = go(program, tmp_path, text, 3.0, intervals, code=6)
+        time = float(re.search(r'stop 1 at .* m at t = (\S+) s: at', told)[1])
+        checks.near(time, asin(0.999)/frequency, 1e-9, 'first passing', scale=1)
 
 
 def test_outputs_do_not_matter(checks, mech9d, tmp_path):
