@@ -27,6 +27,7 @@ contains
         call json%add('branch', b)
         call json%add('of', trim(found%of(found%groups(b))))
         call json%add('points', branch%count)
+        if (found%of(found%groups(b)) == 'periodic') call json%add('period_doublings', branch%doublings)
         call json%add('closed', branch%ends(2)%reason == ends_closed)
         call json%begin_array('ends')
         do i = 1, 2
@@ -57,6 +58,7 @@ contains
     end do
     call json%end_array()
     call json%add('branch_points_left_out', found%left_out)
+    if (any(found%of == 'periodic')) call json%add('period_doublings_left_out', found%not_doubled)
   end subroutine add_branches
 
   !> The name of a kind of point.

@@ -29,7 +29,8 @@ contains
     do b = 1, size(found%branches)
       associate (branch => found%branches(b), first => found%rows(:, at + 1))
         write (unit, '(a)') 'branch '//to_text(b)//': '//counted(branch%count, 'point')//', '//found%parameter//' = '// &
-          to_text(first(3), 8)//' to '//to_text(found%rows(3, at + branch%count), 8)//'; '//words_of_ends(found, b)
+          to_text(first(3), 8)//' to '//to_text(found%rows(3, at + branch%count), 8)//'; '//&
+          period_of_branch(branch%doublings)//words_of_ends(found, b)
         do i = 1, branch%count
           if (branch%kind(i) == 0) cycle
           words = coordinates(found, at + i)
@@ -43,7 +44,21 @@ contains
     if (found%left_out > 0) &
       write (unit, '(a)') 'no branch was followed from '//counted(found%left_out, 'branch point')//', where more than two '// &
         'branches meet, or none crosses'
+    if (found%not_doubled > 0) &
+      write (unit, '(a)') 'no branch was followed from '//counted(found%not_doubled, 'period doubling')//', where the period '// &
+        'has doubled often before, or several multipliers are -1'
   end subroutine print_branches
+
+  !> The period of the motions of a branch beside that of the start, where it differs.
+  function period_of_branch(doublings) result(text)
+    integer, intent(in) :: doublings                     !< times by which the period doubled; below 0 where it was halved
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (doublings == 1) text = 'twice the period; '
+    if (doublings > 1) text = to_text(2**doublings)//' times the period; '
+    if (doublings < 0) text = 'the period divided by '//to_text(2**(-doublings))//'; '
+  end function period_of_branch
 
   !> The coordinates of a row, if they are few.
   function coordinates(found, row) result(text)

@@ -21,6 +21,10 @@ module mech9_branch_point
     real(wp), allocatable :: second(:, :)         !< (n+1,n+1) second derivatives of the equations along it
     real(wp), allocatable :: directions(:, :)     !< (m,branches) of the branches through it that are known, as images
     logical :: is_polished = .false.              !< it is exact
+    logical :: doubles = .false.                  !< periods double there: the point has the single period
+    logical :: knows_single = .false.             !< the branch with the single period has been followed
+    logical :: knows_double = .false.             !< the branch with the doubled period has been
+    integer :: doublings = 0                      !< times by which the period doubled on the way to it
   end type branch_point_type
 
   !> Steps beyond this come from equations that are singular.

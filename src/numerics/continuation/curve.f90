@@ -47,6 +47,8 @@ module mech9_curve
     procedure :: gap => no_gap
     procedure :: meet_end => no_exact_end
     procedure :: kind_of_crossing => always_hopf
+    procedure :: double => not_doubled
+    procedure :: halve => not_halved
     procedure :: is_stopped => never_stopped
   end type curve_type
 
@@ -79,6 +81,30 @@ module mech9_curve
   end interface
 
 contains
+
+  !> The solution of a point at which periods double, with the period doubled, and with the direction of the branch that begins there.
+  subroutine not_doubled(self, point, doubled, found)
+    class(curve_type), intent(inout) :: self            !< the problem
+    type(curve_point_type), intent(in) :: point         !< the point at which periods double
+    type(curve_point_type), intent(inout) :: doubled    !< the same with the doubled period and a direction
+    logical, intent(out) :: found                       !< a branch begins there
+
+    doubled = point
+    found = .false.
+    self%equations = point%equations
+  end subroutine not_doubled
+
+  !> The solution of a point with half the period, where it repeats already after half of it.
+  subroutine not_halved(self, point, half, found)
+    class(curve_type), intent(inout) :: self            !< the problem
+    type(curve_point_type), intent(in) :: point         !< on the curve
+    type(curve_point_type), intent(inout) :: half       !< the same with half the period, without a direction
+    logical, intent(out) :: found                       !< it repeats
+
+    half = point
+    found = .false.
+    self%equations = point%equations
+  end subroutine not_halved
 
   !> The room up to the nearest end of the range in which solutions have a meaning; below zero beyond it. Without such ends it is 1.
   pure real(wp) function no_gap(self, point) result(gap)

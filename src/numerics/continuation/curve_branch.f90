@@ -21,6 +21,7 @@ module mech9_curve_branch
     real(wp) :: low = 0.0_wp                  !< least value of the parameter
     real(wp) :: high = 1.0_wp                 !< its largest value
     integer :: branches = 20                  !< largest number of branches
+    integer :: doublings = 3                  !< periods of solutions that are followed double at most so often
   end type curve_settings_type
 
   !> One end of a branch.
@@ -41,6 +42,7 @@ module mech9_curve_branch
     type(branch_end_type) :: ends(2)          !< at the first point and at the last one
     integer :: from = 0                       !< number of the branch point at which it begins; 0: the start
     integer :: start = 0                      !< number of the point at which it was begun
+    integer :: doublings = 0                  !< times by which the period doubled on the way to it; -1: it was halved
   contains
     procedure :: add
   end type curve_branch_type
@@ -102,5 +104,6 @@ contains
     branch%kind = [backward%kind(n:1:-1), forward%kind(2:forward%count)]
     branch%ends(1) = backward%ends(2)
     branch%ends(2) = forward%ends(2)
+    branch%doublings = forward%doublings
   end subroutine join_halves
 end module mech9_curve_branch

@@ -4,7 +4,8 @@ module mech9_curve_tolerances
   implicit none
   private
   public :: round_off_step, stagnated_step, least_contraction, least_curve_step, first_part, most_turn, most_departure, &
-    same_point, null_direction, difference_step, polished_step, second_order, neutral_root, real_root, same_direction, near_special
+    same_point, null_direction, difference_step, polished_step, second_order, neutral_root, real_root, same_direction, &
+    near_special, near_branching
 
   !> Newton's method has reached round-off where its step is below this: a few thousand units of round-off.
   real(wp), parameter :: round_off_step = 1.0e-12_wp
@@ -41,4 +42,6 @@ module mech9_curve_tolerances
   real(wp), parameter :: same_direction = 0.999_wp
   !> A fold within this part of a step from a branch point is that point: there its test is flat, and round-off moves its zero.
   real(wp), parameter :: near_special = 1.0e-3_wp
+  !> The same for a branch that turns back at a branch point, on which points near it are not apart from those of the other branch.
+  real(wp), parameter :: near_branching = 1.0e-2_wp
 end module mech9_curve_tolerances

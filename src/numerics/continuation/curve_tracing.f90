@@ -4,11 +4,11 @@ module mech9_curve_tracing
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_curve_tolerances, only: least_curve_step, first_part, most_turn, most_departure, same_point, &
-    same_direction, near_special
+    same_direction, near_special, near_branching
   use mech9_curve, only: curve_type, curve_point_type, verdict_type
   use mech9_curve_step, only: correction_type, correct, correct_along, set_direction
-  use mech9_special_points, only: regular, fold, branching, range_end, test_of, locate, growing_pairs, locate_hopf, &
-    growing_reals, locate_crossings
+  use mech9_special_points, only: regular, fold, branching, period_doubling, range_end, test_of, locate, growing_pairs, &
+    locate_hopf, growing_reals, locate_crossings
   use mech9_branch_point, only: branch_point_type, polish_branch_point
   use mech9_curve_branch, only: curve_branch_type, curve_settings_type, ends_low, ends_high, ends_points, ends_closed, ends_range, &
     ends_failed, ends_stopped, ends_special
@@ -22,6 +22,7 @@ module mech9_curve_tracing
     real(wp) :: distance = 0.0_wp         !< from the beginning of the step
     type(curve_point_type) :: point       !< the point
     integer :: row = regular              !< kind of its row, where the branch ends at it
+    logical :: is_guess = .false.         !< it counts only where its exact place is found
   end type event_type
 
   !> Steps of Newton's method at which the next step may be longer, and at which it is shorter.
@@ -57,7 +58,7 @@ contains
         call step_on(curve, a, settings%step, h, b, last%last_step, branch, done)
         if (.not. done) return
         last%reason = 0
-        call pass_events(curve, start, kind == branching .and. branch%count == 1, settings, a, b, verdict(1), branch, met)
+        call pass_events(curve, start, merge(kind, regular, branch%count == 1), settings, a, b, verdict(1), branch, met)
         if (last%reason > 0) return
         call curve%judge(b, verdict(2))
         call branch%add(b, verdict(2), regular)
@@ -136,10 +137,10 @@ contains
   end subroutine change
 
   !> Add the special points within a step to the branch, in their order, and the point where the branch ends, if it does.
-  subroutine pass_events(curve, start, from_branch_point, settings, a, b, before, branch, met)
+  subroutine pass_events(curve, start, from, settings, a, b, before, branch, met)
     class(curve_type), intent(inout) :: curve                         !< the problem
     type(curve_point_type), intent(in) :: start                       !< the point at which the branch began
-    logical, intent(in) :: from_branch_point                          !< this is the first step from a branch point
+    integer, intent(in) :: from                                       !< kind of the start in the first step from it, else regular
     type(curve_settings_type), intent(in) :: settings                 !< bounds
     type(curve_point_type), intent(in) :: a                           !< the point before
     type(curve_point_type), intent(in) :: b                           !< the point behind
@@ -151,16 +152,18 @@ contains
     type(verdict_type) :: verdict
     real(wp) :: length
     integer :: i, next
+    logical :: done
 
     length = dot_product(b%z - a%z, a%direction)
     call find_end(curve, start, settings, a, b, length, last, branch)
-    if (.not. from_branch_point) then
+    if (from /= branching .and. from /= period_doubling) then
       call look_for(branching, events(1))
       call look_for(fold, events(2))
       if (events(1)%kind == branching .and. events(2)%kind == fold .and. &
-          abs(events(1)%distance - events(2)%distance) < near_special*length) events(2)%kind = regular
+          abs(events(1)%distance - events(2)%distance) < near_branching*length) events(2)%kind = regular
     end if
-    call judge_behind()
+    ! a pair of multipliers is on the unit circle where periods double, within errors
+    if (from /= period_doubling) call judge_behind()
     do
       next = 0
       do i = 1, size(events)
@@ -173,8 +176,17 @@ contains
       if (events(next)%kind == branching) then
         call keep_direction(a, b, events(next)%point)
         call polish_branch_point(curve, events(next)%point, found)
+        if (events(next)%is_guess .and. .not. found%is_polished) then
+          events(next)%kind = regular
+          cycle
+        end if
         events(next)%point = found%point
+        found%doublings = branch%doublings
+        call end_at_halving(curve, found, branch, last, done)
         met = [met, found]
+        if (done) exit
+      else if (events(next)%kind == period_doubling) then
+        call keep_doubling(events(next)%point, branch%doublings, met)
       end if
       call curve%judge(events(next)%point, verdict)
       call branch%add(events(next)%point, verdict, events(next)%kind)
@@ -198,6 +210,11 @@ contains
       tests = [test_of(curve, kind, a), test_of(curve, kind, b)]
       if (.not. tests(1)*tests(2) < 0.0_wp) return
       call locate(curve, a, length, kind, tests, event%distance, event%point, is_there)
+      if (.not. is_there .and. kind == branching) then
+        call guess_between(curve, a, b, tests, event%point, is_there)
+        event%is_guess = .true.
+        event%distance = length*abs(tests(1))/sum(abs(tests))
+      end if
       if (is_there) event%kind = kind
     end subroutine look_for
 
@@ -218,6 +235,64 @@ contains
       end if
     end subroutine judge_behind
   end subroutine pass_events
+
+  !> Keep a point at which periods double, on the branch with the single period.
+  subroutine keep_doubling(point, doublings, met)
+    type(curve_point_type), intent(in) :: point                       !< the point, with its direction
+    integer, intent(in) :: doublings                                  !< of the branch
+    type(branch_point_type), allocatable, intent(inout) :: met(:)     !< gets it
+    type(branch_point_type) :: found
+
+    found%point = point
+    found%doubles = .true.
+    found%knows_single = .true.
+    found%doublings = doublings
+    met = [met, found]
+  end subroutine keep_doubling
+
+  !> End a branch at a branch point where solutions repeat already after half their period: behind it they are the same, only begun half
+  !> a period later.
+  subroutine end_at_halving(curve, found, branch, last, done)
+    class(curve_type), intent(inout) :: curve              !< the problem
+    type(branch_point_type), intent(inout) :: found        !< the branch point; then that of the single period
+    type(curve_branch_type), intent(inout) :: branch       !< gets the reason
+    type(event_type), intent(inout) :: last                !< gets the point
+    logical, intent(out) :: done                           !< solutions repeat there
+    type(curve_point_type) :: half
+
+    done = .false.
+    if (found%is_polished) call curve%halve(found%point, half, done)
+    if (.not. done) return
+    branch%ends(2)%reason = ends_special
+    last%kind = regular
+    last%row = period_doubling
+    last%point = found%point
+    found%point = half
+    found%doubles = .true.
+    found%knows_double = .true.
+    found%doublings = branch%doublings - 1
+  end subroutine end_at_halving
+
+  !> A guess of a branch point within a step, where the curve could not be followed to it: a branch that turns back there crosses the other
+  !> one so that points near by are not apart.
+  subroutine guess_between(curve, a, b, tests, point, found)
+    class(curve_type), intent(inout) :: curve          !< the problem
+    type(curve_point_type), intent(in) :: a            !< the point before
+    type(curve_point_type), intent(in) :: b            !< the point behind
+    real(wp), intent(in) :: tests(2)                   !< at both points, of different sign
+    type(curve_point_type), intent(inout) :: point     !< the guess, with the direction of the branch
+    logical, intent(out) :: found                      !< the equations have a value there
+    type(error_type), allocatable :: err
+    real(wp) :: way(size(a%z))
+
+    way = b%z - a%z
+    curve%equations = a%equations
+    call curve%evaluate(a%place, a%z + way*(abs(tests(1))/sum(abs(tests))), point, err)
+    found = .not. allocated(err)
+    if (.not. found) return
+    point%direction = way/norm2(way)
+    point%tangent = point%direction(point%place)
+  end subroutine guess_between
 
   !> Keep the direction of a branch at a branch point within a step: so near to it the equations may tell that of the other branch. The way
   !> from one end of the step to the other is not far from it.

@@ -43,6 +43,7 @@ module mech9_branches
     character(len=11), allocatable :: of(:)                !< (groups) equilibrium, position or periodic
     integer :: growth = 0, period = 0                      !< numbers of these columns; 0: the table has none
     integer :: left_out = 0                                !< branch points from which no branch was followed: they are not simple
+    integer :: not_doubled = 0                             !< period doublings from which no branch was followed
     character(len=:), allocatable :: parameter             !< name of the parameter
   contains
     procedure :: count => count_branches
@@ -285,7 +286,7 @@ contains
     type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
     type(curve_settings_type) :: settings
     type(curve_branch_type), allocatable :: branches(:)
-    integer :: left_out, directions
+    integer :: left_out, not_doubled, directions
 
     call first_direction(start, directions)
     if (directions > 1) then
@@ -297,8 +298,9 @@ contains
     settings%points = request%points
     settings%low = request%low/range
     settings%high = request%high/range
-    call find_curve_branches(curve, start, request%switch, settings, branches, left_out)
+    call find_curve_branches(curve, start, request%switch, settings, branches, left_out, not_doubled)
     found%left_out = found%left_out + left_out
+    found%not_doubled = found%not_doubled + not_doubled
     found%low = [found%low, request%low]
     found%high = [found%high, request%high]
     found%of = [character(len=11) :: found%of, request%of]

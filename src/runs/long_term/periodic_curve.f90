@@ -13,7 +13,6 @@
 module mech9_periodic_curve
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_assembly
-  use mech9_lapack, only: dgetrf, dgetrs
   use mech9_model, only: model_type
   use mech9_simulation, only: interruption_type
   use mech9_curve, only: curve_type, curve_point_type, verdict_type, regular, hopf, period_doubling, torus
@@ -23,6 +22,7 @@ module mech9_periodic_curve
   use mech9_period_map, only: period_map_type
   use mech9_phase_plane, only: phase_plane_type, choose_plane, plane_across, crosses_well
   use mech9_periodic_motion, only: periodic_motion_type, find_multipliers
+  use mech9_monodromy_matrix, only: split_off, find_alternating, solve_square
   implicit none
   private
   public :: periodic_curve_type, begin_periodic_curve
@@ -32,7 +32,7 @@ module mech9_periodic_curve
     type(period_map_type) :: map                                 !< of the last evaluation; to be closed
     real(wp), allocatable :: unit(:)                             !< (m-1) of the components of an image but for the parameter
     real(wp) :: range = 1.0_wp                                   !< of the parameter, in the units of the data file
-    integer :: multiple = 1                                      !< periods of the laws in one of the motion
+    integer, allocatable :: multiples(:)                         !< periods of the laws in one of the motion, by the number of the equations
     logical :: is_free = .false.                                 !< the period belongs to the motion
     logical :: goes_on = .false.                                 !< cyclic coordinates do not come back
     integer :: states = 0                                        !< numbers of a state
@@ -47,6 +47,8 @@ module mech9_periodic_curve
     procedure :: gap
     procedure :: meet_end
     procedure :: kind_of_crossing
+    procedure :: double
+    procedure :: halve
     procedure :: is_stopped
   end type periodic_curve_type
 
@@ -58,6 +60,8 @@ module mech9_periodic_curve
   real(wp), parameter :: least_multiplier = 1.0e-14_wp
   !> A pair of multipliers is -1 where its angle is so near to half a turn, in parts of it.
   real(wp), parameter :: half_turn = 1.0e-3_wp
+  !> A motion repeats after half its period where both ends of the half differ by less, in units of the curve.
+  real(wp), parameter :: repeats = 1.0e-6_wp
   !> A free motion has shrunk to a position of rest where its start crosses the plane at a rate below this, in units of the state over the
   !> angle of the period. Motions as small as this are lost in errors of steps.
   real(wp), parameter :: at_rest = 1.0e-6_wp
@@ -98,7 +102,8 @@ contains
     if (allocated(err)) return
     if (curve%goes_on) curve%map%goes_on = curve%map%may_go_on
     curve%period_of_motion = motion%period
-    if (laws%is_known .and. .not. curve%is_free) curve%multiple = max(1, nint(motion%period/laws%period))
+    curve%multiples = [1]
+    if (laws%is_known .and. .not. curve%is_free) curve%multiples = [max(1, nint(motion%period/laws%period))]
     associate (map => curve%map)
       coordinates = size(map%unit_of_coordinate)
       curve%states = map%states
@@ -271,14 +276,14 @@ contains
     slope = 0.0_wp
     call find_law_period(model, laws, err)
     if (allocated(err) .or. .not. laws%is_known) return
-    self%period_of_motion = self%multiple*laws%period
+    self%period_of_motion = self%multiples(self%equations)*laws%period
     do side = 1, 2
       allocate (beside)
       call self%variable%at([value + (2*side - 3)*part_of_range*self%range], beside, err)
       if (.not. allocated(err)) call find_law_period(beside, laws, err)
       deallocate (beside)
       if (allocated(err)) return
-      periods(side) = self%multiple*laws%period
+      periods(side) = self%multiples(self%equations)*laws%period
     end do
     slope = (periods(2) - periods(1))/(2.0_wp*part_of_range*self%range)
     ! equal periods differ by round-off
@@ -316,7 +321,7 @@ contains
     type(curve_point_type) :: again
     logical :: is_last
 
-    is_last = size(self%last%z) == size(point%z)
+    is_last = size(self%last%z) == size(point%z) .and. (self%is_free .or. self%last%equations == point%equations)
     if (is_last) is_last = all(abs(self%last%z - point%z) <= 0.0_wp)
     if (is_last) return
     self%equations = point%equations
@@ -414,24 +419,6 @@ contains
     found = angle > 0.125_wp*turn .and. angle < 0.375_wp*turn
   end subroutine find_vibration
 
-  !> Solve as many equations as unknowns.
-  subroutine solve_square(matrix, right, x, solved)
-    real(wp), intent(in) :: matrix(:, :)     !< (n,n)
-    real(wp), intent(in) :: right(:)         !< (n) right-hand sides
-    real(wp), intent(out) :: x(:)            !< (n) the solution
-    logical, intent(out) :: solved           !< there is one
-    real(wp) :: a(size(x), size(x)), b(size(x), 1)
-    integer :: pivots(size(x)), info
-
-    a = matrix
-    b(:, 1) = right
-    call dgetrf(size(x), size(x), a, size(x), pivots, info)
-    solved = info == 0
-    if (.not. solved) return
-    call dgetrs('N', size(x), 1, a, size(x), pivots, b, size(x), info)
-    x = b(:, 1)
-  end subroutine solve_square
-
   !> The stability of a periodic motion: the logarithms of its multipliers over the period.
   subroutine judge(self, point, verdict)
     class(periodic_curve_type), intent(inout) :: self     !< the curve
@@ -447,16 +434,12 @@ contains
     verdict%is_stable = .false.
     call stand_at(self, point, err)
     if (allocated(err)) return
-    matrix = self%map%monodromy
+    ! the multiplier 1 of a cyclic coordinate belongs to its own direction
+    kept = kept_states(self)
+    matrix = monodromy(self, point, kept)
     if (self%is_free) then
-      do i = 1, self%states
-        matrix(:, i) = matrix(:, i)*(self%unit(point%place(i))/self%unit(point%place(:self%states)))
-      end do
-      ! the multiplier 1 of a cyclic coordinate belongs to its own direction
-      kept = pack([(i, i=1, self%states)], [.not. self%map%goes_on, (.true., i=size(self%map%free) + 1, self%states)])
       rates = flow(self)
-      matrix = matrix(kept, kept)
-      call split_off(rates(kept), matrix)
+      if (norm2(rates(kept)) > at_rest) call split_off(rates(kept), matrix)
     end if
     call find_multipliers(matrix, multipliers)
     do i = 1, size(multipliers)
@@ -468,24 +451,6 @@ contains
     verdict%growth = maxval(real(verdict%roots, wp))
     verdict%is_stable = .not. verdict%growth > 0.0_wp
   end subroutine judge
-
-  !> Split off an eigenvector from a matrix: what is left, across it, has the other eigenvalues (deflation by a reflection).
-  subroutine split_off(vector, matrix)
-    real(wp), intent(in) :: vector(:)                     !< (n) the eigenvector; the matrix stays whole where it is near zero
-    real(wp), allocatable, intent(inout) :: matrix(:, :)  !< (n,n); then (n-1,n-1)
-    real(wp) :: v(size(vector)), length
-    integer :: n
-
-    n = size(vector)
-    length = norm2(vector)
-    if (length <= at_rest) return
-    v = vector/length
-    v(1) = v(1) + sign(1.0_wp, v(1))
-    v = v*(sqrt(2.0_wp)/norm2(v))
-    matrix = matrix - matmul(reshape(v, [n, 1]), reshape(matmul(v, matrix), [1, n]))
-    matrix = matrix - matmul(reshape(matmul(matrix, v), [n, 1]), reshape(v, [1, n]))
-    matrix = matrix(2:, 2:)
-  end subroutine split_off
 
   !> The kind of a point at which a pair of roots crosses the imaginary axis: one whose multipliers are -1 doubles the period. Of a steady
   !> motion, in which cyclic coordinates alone change, it is a Hopf point.
@@ -507,6 +472,107 @@ contains
     if (i == 0 .or. kind == hopf) return
     if (abs(aimag(verdict%roots(i))*self%period_of_motion - 0.5_wp*turn) < half_turn) kind = period_doubling
   end function kind_of_crossing
+
+  !> The motion with the doubled period where a multiplier is -1, with the direction of the branch that begins there: its start moves along the
+  !> eigenvector, to one side after one period and to the other side after the next one.
+  subroutine double(self, point, doubled, found)
+    class(periodic_curve_type), intent(inout) :: self     !< the curve
+    type(curve_point_type), intent(in) :: point           !< the point at which periods double
+    type(curve_point_type), intent(inout) :: doubled      !< the same with the doubled period and a direction
+    logical, intent(out) :: found                         !< a branch begins there
+    type(error_type), allocatable :: err
+    real(wp) :: move(self%states), along(self%states), z(self%m), direction(self%m)
+    real(wp), allocatable :: vector(:)
+    integer, allocatable :: kept(:)
+
+    call stand_at(self, point, err)
+    found = .not. allocated(err)
+    if (.not. found) return
+    kept = kept_states(self)
+    allocate (vector(size(kept)))
+    call find_alternating(monodromy(self, point, kept), vector, found)
+    if (.not. found) return
+    move = 0.0_wp
+    move(kept) = vector
+    z = point%z
+    if (self%is_free) then
+      ! the start stays in its plane
+      associate (plane => self%planes(point%equations))
+        along = flow(self)
+        move = move - along*(dot_product(plane%normal, move)/dot_product(plane%normal, along))
+      end associate
+      z(self%m - 1) = 2.0_wp*z(self%m - 1)
+      self%equations = point%equations
+    else
+      self%equations = equations_of(self, 2*self%multiples(point%equations))
+    end if
+    call self%evaluate(point%place, z, doubled, err)
+    found = .not. allocated(err)
+    if (.not. found) return
+    direction = matmul(doubled%slopes(:, :self%states), move)
+    doubled%direction = direction/norm2(direction)
+    doubled%tangent = doubled%direction(doubled%place)
+  end subroutine double
+
+  !> The numbers of the states but for cyclic coordinates that go on.
+  pure function kept_states(self) result(kept)
+    class(periodic_curve_type), intent(in) :: self        !< the curve, evaluated
+    integer, allocatable :: kept(:)
+    integer :: i
+
+    kept = pack([(i, i=1, self%states)], [.not. self%map%goes_on, (.true., i=size(self%map%free) + 1, self%states)])
+  end function kept_states
+
+  !> The monodromy matrix of some states, in units of the curve.
+  function monodromy(self, point, kept) result(matrix)
+    class(periodic_curve_type), intent(in) :: self        !< the curve, evaluated at the point
+    type(curve_point_type), intent(in) :: point           !< the point
+    integer, intent(in) :: kept(:)                        !< (n) numbers of the states
+    real(wp) :: matrix(size(kept), size(kept))
+    integer :: i, j
+
+    do j = 1, size(kept)
+      do i = 1, size(kept)
+        matrix(i, j) = self%map%monodromy(kept(i), kept(j))*(self%unit(point%place(kept(j)))/self%unit(point%place(kept(i))))
+      end do
+    end do
+  end function monodromy
+
+  !> The number of the equations of driven motions with a multiple of the period of their laws.
+  integer function equations_of(self, multiple) result(number)
+    class(periodic_curve_type), intent(inout) :: self     !< the curve; gets a new number where there is none
+    integer, intent(in) :: multiple                       !< of the period
+
+    number = findloc(self%multiples, multiple, dim=1)
+    if (number > 0) return
+    self%multiples = [self%multiples, multiple]
+    number = size(self%multiples)
+  end function equations_of
+
+  !> The motion with half the period, where it repeats already after half of it.
+  subroutine halve(self, point, half, found)
+    class(periodic_curve_type), intent(inout) :: self     !< the curve
+    type(curve_point_type), intent(in) :: point           !< on the curve
+    type(curve_point_type), intent(inout) :: half         !< the same with half the period, without a direction
+    logical, intent(out) :: found                         !< it repeats
+    type(error_type), allocatable :: err
+    real(wp) :: z(self%m)
+
+    half = point
+    z = point%z
+    found = self%is_free .or. mod(self%multiples(point%equations), 2) == 0
+    if (.not. found) return
+    if (self%is_free) then
+      z(self%m - 1) = 0.5_wp*z(self%m - 1)
+      self%equations = point%equations
+    else
+      self%equations = equations_of(self, self%multiples(point%equations)/2)
+    end if
+    call self%evaluate(point%place, z, half, err)
+    found = .not. allocated(err)
+    if (found) found = norm2(half%residual) <= repeats
+    if (found) call make_exact(self, half)
+  end subroutine halve
 
   !> Whether the work shall stop.
   logical function is_stopped(self) result(stopped)
