@@ -21,8 +21,8 @@ module mech9_force_gradient
   use mech9_twists, only: frame_twists_type
   use mech9_tangent, only: tangent_type
   use mech9_varied_motion, only: varied_motion_type
-  use mech9_gradient_rows, only: gradient_rows_type, new_gradient_rows, clear_rows, sum_inward, row_of_coordinate, eliminate_rows, &
-    subtract_crossed
+  use mech9_gradient_rows, only: gradient_rows_type, new_gradient_rows, clear_rows, sum_inward, sum_order_inward, &
+    row_of_coordinate, eliminate_rows, subtract_crossed
   use mech9_gradient_arithmetic, only: gradient_arithmetic_type
   use mech9_planar_gradient, only: planar_gradient_type, new_planar_gradient
   use mech9_spatial_gradient, only: spatial_gradient_type, new_spatial_gradient
@@ -261,7 +261,7 @@ contains
     if (allocated(err)) return
     if (allocated(self%given)) self%held%coordinates(2, :) = self%held%coordinates(2, :) - self%given
     if (self%changes%moves_links) self%link_wrenches = self%held%frames(:, 2, :)
-    call sum_inward(self%plan, 3*self%d, self%held%frames)
+    call sum_order_inward(self%plan, self%d, 2, self%held%frames)
     call eliminate_rows(self%plan, self%d, 2, state, self%twists%step, self%third%couplings, self%maps, blocks, self%held)
   end subroutine find_held
 
