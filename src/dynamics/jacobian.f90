@@ -37,7 +37,9 @@ contains
     real(wp), intent(out) :: row(:)                    !< (independent) the rates
     integer :: e, s
 
-    row = 0.0_wp
+    ! of an independent coordinate also where nothing depends on it and the entries are left out
+    row = merge(1.0_wp, 0.0_wp, plan%independent == coordinate)
+    if (any(plan%independent == coordinate)) return
     s = plan%step_of(coordinate)
     do e = dynamics%first(s), dynamics%first(s + 1) - 1
       row(dynamics%column(e)) = row(dynamics%column(e)) + jacobian%b(e)
