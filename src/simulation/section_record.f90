@@ -51,7 +51,7 @@ module mech9_section_record
     character(len=:), allocatable :: names(:), units(:)       !< headings of the columns: point, t and those of the run
     real(wp), allocatable :: points(:, :)                     !< (columns,room) the points, then room for more
     integer :: count = 0                                      !< points so far
-    real(wp) :: range(2) = [huge(1.0_wp), -huge(1.0_wp)]      !< least and greatest value at the ends of strides
+    real(wp) :: range(2) = [huge(1.0_wp), -huge(1.0_wp)]      !< least and greatest value at the ends of strides behind the transient
     integer, private :: used = 0                              !< columns of the run, the first ones, that are recorded
     integer, private :: columns(0:2) = 0                      !< column of the value, and of its derivatives; 0: not known
     real(wp), private :: factor = 1.0_wp                      !< from the coordinate in the program's unit to that of the results
@@ -277,14 +277,14 @@ contains
       call watched%know((self%last%t), self%last, err)
     end select
     if (allocated(err)) return
-    self%range = [min(self%range(1), self%first%numbers(0), self%last%numbers(0)), &
-                  max(self%range(2), self%first%numbers(0), self%last%numbers(0))]
     call set_round_off(self)
     self%next = 1
     if (abs(self%last%t - self%start) < self%wanted%transient) then
       self%passings = [passing_type ::]
       self%last_cell = self%levels%cell(self%last%numbers(0), self%cell)
     else
+      self%range = [min(self%range(1), self%first%numbers(0), self%last%numbers(0)), &
+                    max(self%range(2), self%first%numbers(0), self%last%numbers(0))]
       call find_passings(watched, self%levels, self%first, self%last, self%cell, self%passings, self%last_cell, err)
       if (allocated(err)) return
     end if

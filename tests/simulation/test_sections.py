@@ -102,6 +102,8 @@ def test_grazing(checks, mech9d, tmp_path):
     checks.near(points['t'], expected, 1e-6, 'two points at each turn', scale=1)
     points, report, said = go(mech9d, tmp_path, OSCILLATOR, f'coordinate=1, value={r * (1 + 1e-7)!r}, direction=0', 20.0)
     checks.true(report['section']['points'] == 0 and 'is never met; it went from -0.36' in said, 'never met', said)
+    _, _, said = go(mech9d, tmp_path, OSCILLATOR, 'coordinate=1, value=0, transient=30', 20.0)
+    checks.true('the motion ends before its transient' in said, 'the transient is too long', said)
 
 
 def test_outputs_do_not_matter(checks, mech9d, tmp_path):

@@ -177,7 +177,9 @@ contains
       write (unit, '(a)') 'section: '//counted(section%count, 'point')
       if (writes .and. section%wanted%table /= '' .and. section%wanted%table /= '-') &
         write (unit, '(2a)') 'table of the section: ', section%wanted%table
-    else if (section%wanted%period > 0.0_wp .or. section%range(1) > section%range(2)) then
+    else if (section%range(1) > section%range(2) .and. .not. section%wanted%period > 0.0_wp) then
+      write (unit, '(a)') 'the section has no point: the motion ends before its transient'
+    else if (section%wanted%period > 0.0_wp) then
       write (unit, '(a)') 'the section has no point: the motion, or what follows the transient, is shorter than the period'
     else
       words = ' '//words_of_value(section)
