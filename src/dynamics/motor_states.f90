@@ -5,7 +5,9 @@ module mech9_motor_states
   use mech9_motion_view, only: unlocked
   use mech9_motor, only: motor_type, motor_motion_type, motor_action_type
   use mech9_mechanism, only: mechanism_type
+  use mech9_plan, only: plan_type
   use mech9_state, only: state_type
+  use mech9_frame_motion, only: point_motion
   implicit none
   private
   public :: start_motors, find_motor_rates, motion_of_state, find_action, find_limits, has_limits
@@ -24,30 +26,42 @@ contains
   end subroutine start_motors
 
   !> The action of a motor in a state of motion with all coordinates, rates and accelerations. Fails where its law has no value.
-  subroutine find_action(mechanism, i, state, action, err)
+  subroutine find_action(mechanism, plan, i, state, action, err)
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(plan_type), intent(in) :: plan                 !< the plan in which the motion is given
     integer, intent(in) :: i                            !< number of the motor
     type(state_type), intent(in) :: state               !< the state of motion
     type(motor_action_type), intent(out) :: action      !< the action
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     associate (motor => mechanism%motors(i)%motor)
-      call motor%act(motion_of_state(motor, i, state), action, err)
+      call motor%act(motion_of_state(motor, plan, i, state), action, err)
     end associate
   end subroutine find_action
 
-  !> The motion of a motor's coordinate, and the motor's state, in a state of motion.
-  pure function motion_of_state(motor, i, state) result(motion)
+  !> The motion of a motor's coordinate and of the variable of its law, and the motor's state, in a state of motion.
+  pure function motion_of_state(motor, plan, i, state) result(motion)
     class(motor_type), intent(in) :: motor              !< the motor
+    type(plan_type), intent(in) :: plan                 !< the plan in which the motion is given
     integer, intent(in) :: i                            !< its number
     type(state_type), intent(in) :: state               !< the state of motion
     type(motor_motion_type) :: motion
+    real(wp), dimension(3) :: position, velocity, acceleration
 
     motion%t = state%t
     motion%q = state%q(motor%coordinate)
     motion%dq = state%dq(motor%coordinate)
     motion%ddq = state%ddq(motor%coordinate)
-    if (allocated(motor%over)) call motor%over%follow(state%q, state%dq, state%ddq, motion%x, motion%dx, motion%ddx)
+    if (allocated(motor%over)) then
+      associate (over => motor%over)
+        if (over%link > 0) then
+          call point_motion(plan, state, over%link, over%position, position, velocity, acceleration)
+          call over%follow_point(position, velocity, acceleration, motion%x, motion%dx, motion%ddx)
+        else
+          call over%follow(state%q, state%dq, state%ddq, motion%x, motion%dx, motion%ddx)
+        end if
+      end associate
+    end if
     motion%steady = .not. allocated(state%motor)
     if (motion%steady) return
     motion%value = state%motor(i)
@@ -55,8 +69,9 @@ contains
   end function motion_of_state
 
   !> The rates of the motors' states.
-  subroutine find_motor_rates(mechanism, state, err)
+  subroutine find_motor_rates(mechanism, plan, state, err)
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(plan_type), intent(in) :: plan                 !< the plan in which the motion is given
     type(state_type), intent(inout) :: state            !< with the rates of all coordinates; gets those of the motors' states
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(motor_action_type) :: action
@@ -64,7 +79,7 @@ contains
 
     if (.not. allocated(state%motor)) return
     do i = 1, size(state%motor)
-      call find_action(mechanism, i, state, action, err)
+      call find_action(mechanism, plan, i, state, action, err)
       if (allocated(err)) return
       state%motor_rate(i) = action%rate
     end do
@@ -82,9 +97,10 @@ contains
   end function has_limits
 
   !> The limits at which the motors work, by the forces that they would have without.
-  subroutine find_limits(mechanism, state, err)
+  subroutine find_limits(mechanism, plan, state, err)
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
-    type(state_type), intent(inout) :: state            !< with the rates of the motors' coordinates; gets the limits
+    type(plan_type), intent(in) :: plan                 !< the plan in which the motion is given
+    type(state_type), intent(inout) :: state            !< with the rates of all coordinates and links; gets the limits
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(motor_action_type) :: action
     integer :: i
@@ -92,7 +108,7 @@ contains
     if (.not. allocated(state%motor)) return
     do i = 1, size(state%motor)
       state%limited(i) = unlocked
-      call find_action(mechanism, i, state, action, err)
+      call find_action(mechanism, plan, i, state, action, err)
       if (allocated(err)) return
       state%limited(i) = 0
       if (abs(action%demand) > 1.0_wp) state%limited(i) = nint(sign(1.0_wp, action%demand))

@@ -58,7 +58,7 @@ contains
     type(group_type), intent(in) :: group   !< a group
 
     keeps_point = group%name == 'contact'
-    if (group%name /= 'load' .or. .not. group%sound) return
+    if ((group%name /= 'load' .and. group%name /= 'motor') .or. .not. group%sound) return
     if (has_name(group, 'over')) keeps_point = index(get_text(group, 'over'), '.') > 0
   end function keeps_point
 

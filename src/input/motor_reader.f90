@@ -138,7 +138,7 @@ contains
     allocate (motor, source=pid)
   end subroutine read_pid_motor
 
-  !> Report a law over a point: motors read coordinates. Report a setpoint over a rate whose own rate, an acceleration, would count.
+  !> Report a setpoint over a rate or a velocity whose own rate, an acceleration, would count.
   subroutine check_variable(group, motor, needs_rate, diagnostics)
     type(group_type), intent(in) :: group                 !< the group of the data file
     class(motor_type), intent(in) :: motor                !< the motor
@@ -146,13 +146,10 @@ contains
     type(diagnostics_type), intent(inout) :: diagnostics  !< gets the errors
 
     if (.not. allocated(motor%over)) return
-    if (motor%over%coordinate == 0) then
-      call diagnostics%add(span_of(group, 'over', 1), 'the law of a motor is over t, a coordinate (as q1) or a rate (as dq1); '// &
-                           'over a point a &load can be')
-    else if (motor%over%is_rate .and. needs_rate) then
+    if (motor%over%is_rate .and. needs_rate) &
       call diagnostics%add(span_of(group, 'over', 1), 'the derivative part needs the rate of the setpoint, and over '// &
-                           get_text(group, 'over')//' this is an acceleration; leave derivative= out, or give a coordinate')
-    end if
+                           get_text(group, 'over')//' this is an acceleration; leave derivative= out, or give a coordinate '// &
+                           'or the position of a point')
   end subroutine check_variable
 
   !> Whether a law is given that is not constant.

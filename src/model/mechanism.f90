@@ -70,7 +70,7 @@ contains
     end do
   end function has_forces
 
-  !> Mark the links on whose motion loads depend or on which they act. Motors act on coordinates alone.
+  !> Mark the links on whose motion loads and motors depend or on which they act.
   pure subroutine mark_loaded_links(self, loaded)
     class(mechanism_type), intent(in) :: self   !< the mechanism
     logical, intent(inout) :: loaded(:)         !< (N) becomes true for these links; others stay
@@ -78,6 +78,9 @@ contains
 
     do i = 1, size(self%loads)
       if (.not. self%loads(i)%load%is_idle()) call self%loads(i)%load%mark_links(loaded)
+    end do
+    do i = 1, size(self%motors)
+      call self%motors(i)%motor%mark_links(loaded)
     end do
   end subroutine mark_loaded_links
 

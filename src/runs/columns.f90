@@ -197,9 +197,10 @@ contains
   end subroutine append_motors
 
   !> Fill the columns of motors in a row. Fails where the law of a motor has no value.
-  subroutine fill_motors(self, mechanism, state, row, err)
+  subroutine fill_motors(self, mechanism, plan, state, row, err)
     class(columns_type), intent(in) :: self             !< the columns
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(plan_type), intent(in) :: plan                 !< the plan in which the motion is given
     type(state_type), intent(in) :: state               !< motion of the mechanism, with the states of the motors
     real(wp), intent(inout) :: row(:)                   !< numbers of one row, one for each column
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
@@ -207,7 +208,7 @@ contains
     integer :: at, i
 
     do i = 1, self%motors/2
-      call find_action(mechanism, i, state, action, err)
+      call find_action(mechanism, plan, i, state, action, err)
       if (allocated(err)) return
       at = self%motion + self%forces() + 2*i
       row(at - 1) = action%value

@@ -60,7 +60,8 @@ contains
         rows(1 + k, i) = list(i)%resting%state%q(k)
       end do
       if (columns%forces() > 0) call fill_forces(model, columns, list(i), rows(:, i), err)
-      if (.not. allocated(err)) call columns%fill_motors(model%mechanism, list(i)%resting%state, rows(:, i), err)
+      if (.not. allocated(err)) &
+        call columns%fill_motors(model%mechanism, list(i)%resting%plan, list(i)%resting%state, rows(:, i), err)
       if (allocated(err)) return
       call columns%fill_stops(model%mechanism, list(i)%resting%state, rows(:, i))
       call fill_contacts(columns, model%mechanism, list(i)%resting%plan, list(i)%resting%state, rows(:, i))

@@ -426,7 +426,7 @@ contains
       if (allocated(err)) return
       call self%forces%fill(self%columns, self%simulation%model%mechanism, force_plan, force_state, row)
     end if
-    call self%columns%fill_motors(self%simulation%model%mechanism, state, row, err)
+    call self%columns%fill_motors(self%simulation%model%mechanism, plan, state, row, err)
     if (allocated(err)) return
     next = self%columns%motion + self%columns%forces() + self%columns%motors
     associate (simulation => self%simulation)

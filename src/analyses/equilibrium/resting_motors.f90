@@ -8,7 +8,6 @@ module mech9_resting_motors
   use mech9_error, only: error_type, raise, exit_data, exit_assembly
   use mech9_equilibrium_failures, only: failure_no_equilibrium, failure_moving_setpoint
   use mech9_mechanism, only: mechanism_type
-  use mech9_law_over, only: law_over_type
   use mech9_motor, only: motor_action_type
   use mech9_motor_states, only: start_motors, find_limits, find_action
   use mech9_partition, only: partition_type, driven_coordinate
@@ -17,6 +16,7 @@ module mech9_resting_motors
   use mech9_planning, only: planning_settings_type, make_plan
   use mech9_resting_plan, only: plan_by_geometry
   use mech9_motion_variation, only: vary_motion
+  use mech9_tree_forces, only: show_variation
   use mech9_equilibrium_search, only: tell_forces
   use mech9_resting_mechanism, only: resting_type, put_to_rest, stand_at, copy_resting
   implicit none
@@ -109,7 +109,7 @@ contains
     forces = resting%linearisation%forces
     is_held = .false.
     do i = 1, size(mechanism%motors)
-      call find_action(mechanism, i, resting%state, action, err)
+      call find_action(mechanism, resting%plan, i, resting%state, action, err)
       if (allocated(err)) return
       values(i) = action%value
       associate (motor => mechanism%motors(i)%motor)
@@ -130,9 +130,7 @@ contains
     end if
     call start_motors(mechanism, state)
     state%motor = values
-    call find_limits(mechanism, state, err)
-    if (allocated(err)) return
-    call refuse_limits(mechanism, forces, state, err)
+    call refuse_limits(mechanism, resting%plan, forces, state, err)
     if (allocated(err)) return
     if (is_held) then
       call put_to_rest(mechanism, partition, plan, state, other, err)
@@ -140,19 +138,25 @@ contains
     else
       call stand_at(mechanism, state, resting, err)
     end if
+    if (.not. allocated(err)) call find_limits(mechanism, resting%plan, resting%state, err)
   end subroutine release_setpoints
 
-  !> Fail where a controller with an integral part works at its limit.
-  subroutine refuse_limits(mechanism, forces, state, err)
+  !> Fail where a controller with an integral part would need a force beyond its limit.
+  subroutine refuse_limits(mechanism, plan, forces, state, err)
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(plan_type), intent(in) :: plan                 !< any plan of it: setpoints that are held depend on no link
     real(wp), intent(in) :: forces(:)                   !< (M) that hold the setpoints [N m, N]
-    type(state_type), intent(in) :: state               !< with the limits at which the motors work
+    type(state_type), intent(in) :: state               !< with the states of the motors
     type(error_type), allocatable, intent(out) :: err   !< the failure
+    type(motor_action_type) :: action
     integer :: i
 
     do i = 1, size(mechanism%motors)
       associate (motor => mechanism%motors(i)%motor)
-        if (.not. motor%holds_setpoint() .or. state%limited(i) == 0) cycle
+        if (.not. motor%holds_setpoint()) cycle
+        call find_action(mechanism, plan, i, state, action, err)
+        if (allocated(err)) return
+        if (abs(action%demand) <= 1.0_wp) cycle
         call raise(err, exit_assembly, failure_no_equilibrium)
         call tell_forces(mechanism, [motor%coordinate], [motor%excess_of(forces(motor%coordinate))], &
                          [state%q(motor%coordinate)], err)
@@ -169,9 +173,10 @@ contains
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     type(motor_action_type) :: action
     real(wp), dimension(size(resting%free), size(resting%state%q)) :: by_position, rate_by_position, by_rate
+    real(wp) :: variables(size(resting%free), 4, size(mechanism%motors))
     integer :: i, n, s, v
 
-    call find_slopes(resting, by_position, rate_by_position, by_rate)
+    call find_slopes(mechanism, resting, by_position, rate_by_position, by_rate, variables)
     n = size(resting%free)
     allocate (coupling%states(0), coupling%inputs(0))
     do i = 1, size(mechanism%motors)
@@ -183,7 +188,7 @@ contains
     allocate (coupling%force_by_state(n, s), coupling%force_by_input(n, v), coupling%rate_by_q(s, n), coupling%rate_by_dq(s, n), &
               coupling%rate_by_state(s), coupling%rate_by_input(s, v), source=0.0_wp)
     do i = 1, size(mechanism%motors)
-      call find_action(mechanism, i, resting%state, action, err)
+      call find_action(mechanism, resting%plan, i, resting%state, action, err)
       if (allocated(err)) return
       s = findloc(coupling%states, i, dim=1)
       v = findloc(coupling%inputs, i, dim=1)
@@ -195,33 +200,24 @@ contains
           coupling%rate_by_dq(s, :) = action%rate_by_dq*by_rate(:, k)
           coupling%rate_by_state(s) = action%rate_by_value
           if (v > 0) coupling%rate_by_input(s, v) = action%rate_by_input
-          if (allocated(mechanism%motors(i)%motor%over)) call add_variable(mechanism%motors(i)%motor%over)
+          coupling%rate_by_q(s, :) = coupling%rate_by_q(s, :) + action%rate_by_x*variables(:, 1, i) &
+                                     + action%rate_by_dx*variables(:, 2, i)
+          coupling%rate_by_dq(s, :) = coupling%rate_by_dq(s, :) + action%rate_by_x*variables(:, 3, i) &
+                                      + action%rate_by_dx*variables(:, 4, i)
         end if
       end associate
     end do
-  contains
-    !> Add the derivatives of the rate of a state by the variable of the motor's law.
-    subroutine add_variable(over)
-      type(law_over_type), intent(in) :: over   !< the law
-
-      associate (j => over%coordinate, by_x => action%rate_by_x/over%unit, by_dx => action%rate_by_dx/over%unit)
-        if (over%is_rate) then
-          coupling%rate_by_q(s, :) = coupling%rate_by_q(s, :) + by_x*rate_by_position(:, j)
-          coupling%rate_by_dq(s, :) = coupling%rate_by_dq(s, :) + by_x*by_rate(:, j)
-        else
-          coupling%rate_by_q(s, :) = coupling%rate_by_q(s, :) + by_x*by_position(:, j) + by_dx*rate_by_position(:, j)
-          coupling%rate_by_dq(s, :) = coupling%rate_by_dq(s, :) + by_dx*by_rate(:, j)
-        end if
-      end associate
-    end subroutine add_variable
   end subroutine couple_motors
 
-  !> Derivatives of all coordinates and rates by the free coordinates and their rates.
-  subroutine find_slopes(resting, by_position, rate_by_position, by_rate)
+  !> Derivatives of all coordinates and rates, and of the variables of motors' laws, by the free coordinates and their rates.
+  subroutine find_slopes(mechanism, resting, by_position, rate_by_position, by_rate, variables)
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
     type(resting_type), intent(inout) :: resting        !< its last variation changes
     real(wp), intent(out) :: by_position(:, :)          !< (n,M) of coordinates by free coordinates
     real(wp), intent(out) :: rate_by_position(:, :)     !< (n,M) of rates by free coordinates
     real(wp), intent(out) :: by_rate(:, :)              !< (n,M) of rates by the rates of free coordinates
+    real(wp), intent(out) :: variables(:, :, :)         !< (n,4,motors) of variables and of their derivatives in time by free
+                                                        !< coordinates, and by their rates; 0 for laws of time
     integer :: i
 
     associate (variation => resting%linearisation%variation)
@@ -231,11 +227,32 @@ contains
         call vary_motion(resting%plan, resting%state, resting%linearisation%motion, variation)
         by_position(i, :) = variation%q
         rate_by_position(i, :) = variation%dq
+        call find_variables(mechanism, resting, variables(i, 1:2, :))
         call variation%clear()
         variation%dq(resting%free(i)) = 1.0_wp
         call vary_motion(resting%plan, resting%state, resting%linearisation%motion, variation)
         by_rate(i, :) = variation%dq
+        call find_variables(mechanism, resting, variables(i, 3:4, :))
       end do
     end associate
   end subroutine find_slopes
+
+  !> Derivatives of the variables of motors' laws, and of their derivatives in time, in the last variation.
+  subroutine find_variables(mechanism, resting, variables)
+    type(mechanism_type), intent(in) :: mechanism       !< the mechanism
+    type(resting_type), intent(inout) :: resting        !< with the variation, and the motion as loads read it
+    real(wp), intent(out) :: variables(:, :)            !< (2,motors) the derivatives [unit of the data file]
+    integer :: i
+
+    variables = 0.0_wp
+    associate (linearisation => resting%linearisation, tree => resting%linearisation%tree)
+      call show_variation(resting%plan, linearisation%dynamics, resting%state, linearisation%variation, tree%change)
+      do i = 1, size(mechanism%motors)
+        associate (motor => mechanism%motors(i)%motor)
+          if (allocated(motor%over)) &
+            call motor%over%change_of_motion(tree%loads%view, tree%change, variables(1, i), variables(2, i))
+        end associate
+      end do
+    end associate
+  end subroutine find_variables
 end module mech9_resting_motors

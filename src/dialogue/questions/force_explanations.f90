@@ -147,7 +147,8 @@ module mech9_force_explanations
                   'The voltage is multiplied by a number that depends on time as a drive does, or the setpoint depends on time '// &
                   'so: constant, polynomial, harmonic, table or segments.', 'harmonic'), &
     explanation_type('motor', 'over', any_law, &
-                  'The law may have another variable than the time: a coordinate (q1), or its rate (dq1).', &
+                  'The law may have another variable than the time: a coordinate (q1), its rate (dq1), or the position or '// &
+                  'velocity of a point (P.x, P.vx).', &
                   'dq1 (the law counts in the rate of coordinate 1)'), &
     explanation_type('motor', 'coefficients', 'law:polynomial', &
                   'The factor or setpoint is c0 + c1 t + c2 t^2 + ..., with the time t in seconds.', &

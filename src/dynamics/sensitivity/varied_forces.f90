@@ -63,6 +63,9 @@ contains
     do i = 1, size(self%acting)
       call model%mechanism%loads(i)%load%mark_links(marked)
     end do
+    do i = 1, size(model%mechanism%motors)
+      call model%mechanism%motors(i)%motor%mark_links(marked)
+    end do
     self%loaded = pack([(i, i=2, links)], marked(2:))
     allocate (self%view%links(links), self%view%q(m), self%view%dq(m))
     self%change = new_motion_change(links, m)

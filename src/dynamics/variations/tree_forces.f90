@@ -18,7 +18,8 @@ module mech9_tree_forces
   use mech9_variation, only: variation_type
   implicit none
   private
-  public :: tree_forces_type, new_tree_forces, find_tree_forces, vary_tree_forces, loop_wrench_type, add_body, add_loads
+  public :: tree_forces_type, new_tree_forces, find_tree_forces, vary_tree_forces, loop_wrench_type, add_body, add_loads, &
+            show_variation
 
   !> The force of a closed chain on its closing frame, and its moment about the origin of the frame in which the loop starts, in
   !> the axes of that frame. The target gets the opposite.

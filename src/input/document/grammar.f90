@@ -6,7 +6,7 @@ module mech9_grammar
   use mech9_program_kind, only: kinematics, dynamics, both => both_programs
   use mech9_text, only: lower
   use mech9_grammar_rows, only: group_row_type, item_row_type, unlimited, for_forces, needed, optional, any_law, &
-    variable_of_law, variable_of_motor
+    variable_of_law
   use mech9_study_grammar, only: study_items, link_items, long_term_items
   use mech9_output_grammar, only: output_items
   implicit none
@@ -351,7 +351,7 @@ module mech9_grammar
     item_row_type('motor', 'law', 'text', 1, 1, '', optional, '''constant''', '', 'constant polynomial harmonic table segments', &
                   '', 'the form in time of the factor of voltage, or of the setpoint, with the names of &drive', '''harmonic''', &
                   seldom=.true.), &
-    item_row_type('motor', 'over', 'text', 1, 1, '', optional, '''t''', '', '', any_law, variable_of_motor, '''dq1'''), &
+    item_row_type('motor', 'over', 'text', 1, 1, '', optional, '''t''', '', '', any_law, variable_of_law, '''dq1'''), &
     item_row_type('motor', 'coefficients', 'real', 1, unlimited, '1 or q, /s', needed, '', '', '', 'law:polynomial', &
                   'c0, c1, c2, ... of the factor or setpoint c0 + c1 t + c2 t^2 + ...', '0, 0.5'), &
     item_row_type('motor', 'mean', 'real', 1, 1, '1 or q', optional, '0', '', '', 'law:harmonic', &

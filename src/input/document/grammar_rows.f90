@@ -3,7 +3,7 @@ module mech9_grammar_rows
   use mech9_program_kind, only: both_programs
   implicit none
   private
-  public :: group_row_type, item_row_type, unlimited, for_forces, needed, optional, any_law, variable_of_law, variable_of_motor
+  public :: group_row_type, item_row_type, unlimited, for_forces, needed, optional, any_law, variable_of_law
   public :: refers_to, refers_to_link, refers_to_coordinate
 
   !> One kind of group.
@@ -48,8 +48,6 @@ module mech9_grammar_rows
   character(len=*), parameter :: any_law = 'law:polynomial law:harmonic law:table law:segments'
   character(len=*), parameter :: variable_of_law = 'variable of the law in place of t: a coordinate, a rate (dq1) or a point '// &
     '(P.x, P.vx), in units of this file'
-  character(len=*), parameter :: variable_of_motor = 'variable of the law in place of t: a coordinate or a rate (dq1), in '// &
-    'units of this file'
 
 contains
 

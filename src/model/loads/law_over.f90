@@ -31,8 +31,16 @@ module mech9_law_over
     procedure :: is_over
     procedure :: constants
     procedure :: vary
+    procedure :: find_motion
+    procedure :: change_of_motion
+    procedure :: change_by_shift
+    procedure :: own_numbers
     procedure :: follow
+    procedure :: follow_point
   end type law_over_type
+
+  !> An acceleration that is left out.
+  real(wp), parameter :: none(3) = 0.0_wp
 
 contains
 
@@ -157,7 +165,7 @@ contains
     real(wp) :: law, slope, rate, acceleration, shift(3)
     integer :: first
 
-    first = merge(4, 1, self%link > 0)
+    first = self%own_numbers() + 1
     call self%law%vary(change(first:), self%variable(state), value, rate, acceleration)
     if (self%link == 0) return
     call self%evaluate(state, law, slope, err)
@@ -168,6 +176,90 @@ contains
     end associate
     value = value + slope*dot_product(self%direction, shift)
   end subroutine vary
+
+  !> How many of the numbers stand before those of the law itself: the place of its point, where there is one.
+  pure integer function own_numbers(self)
+    class(law_over_type), intent(in) :: self   !< the law
+
+    own_numbers = merge(3, 0, self%link > 0)
+  end function own_numbers
+
+  !> The variable in a motion, and its derivative in time. That of a rate or a velocity is an acceleration, and left out.
+  pure subroutine find_motion(self, state, x, dx)
+    class(law_over_type), intent(in) :: self       !< the law
+    type(motion_view_type), intent(in) :: state    !< present motion of links and coordinates
+    real(wp), intent(out) :: x                     !< the variable [unit of the data file]
+    real(wp), intent(out) :: dx                    !< its derivative in time
+    real(wp) :: unused
+
+    if (self%link > 0) then
+      associate (link => state%links(self%link))
+        call self%follow_point(link%point_position(self%position), link%point_velocity(self%position), none, x, dx, unused)
+      end associate
+    else
+      call self%follow(state%q, state%dq, [real(wp) ::], x, dx, unused)
+    end if
+  end subroutine find_motion
+
+  !> The derivatives of the variable, and of its derivative in time, by a parameter on which the motion depends. That of an
+  !> acceleration is left out.
+  pure subroutine change_of_motion(self, state, change, x, dx)
+    class(law_over_type), intent(in) :: self         !< the law
+    type(motion_view_type), intent(in) :: state      !< present motion of links and coordinates
+    type(motion_change_type), intent(in) :: change   !< derivative of the motion by the parameter
+    real(wp), intent(out) :: x                       !< derivative of the variable [unit of the data file]
+    real(wp), intent(out) :: dx                      !< derivative of its derivative in time
+    real(wp) :: unused
+
+    if (self%link > 0) then
+      associate (link => state%links(self%link), of_link => change%links(self%link))
+        call self%follow_point(of_link%of_position(link, self%position), of_link%of_velocity(link, self%position), none, x, dx, &
+                               unused)
+      end associate
+    else
+      call self%follow(change%q, change%dq, [real(wp) ::], x, dx, unused)
+    end if
+  end subroutine change_of_motion
+
+  !> The derivatives of the variable, and of its derivative in time, by a parameter on which the place of its point depends: zero
+  !> where it has none. That of an acceleration is left out.
+  pure subroutine change_by_shift(self, state, change, x, dx)
+    class(law_over_type), intent(in) :: self         !< the law
+    type(motion_view_type), intent(in) :: state      !< present motion of links and coordinates
+    real(wp), intent(in) :: change(:)                !< derivatives of its numbers, as of `constants`
+    real(wp), intent(out) :: x                       !< derivative of the variable [unit of the data file]
+    real(wp), intent(out) :: dx                      !< derivative of its derivative in time
+    real(wp) :: shift(3), unused
+
+    x = 0.0_wp
+    dx = 0.0_wp
+    if (self%link == 0) return
+    associate (link => state%links(self%link))
+      shift = link%fixed_components(change(1:3))
+      call self%follow_point(shift, cross(link%omega, shift), none, x, dx, unused)
+    end associate
+  end subroutine change_by_shift
+
+  !> The variable with its derivatives in time, where it belongs to a point. The second derivative of a velocity is left out.
+  pure subroutine follow_point(self, position, velocity, acceleration, x, dx, ddx)
+    class(law_over_type), intent(in) :: self      !< the law
+    real(wp), intent(in) :: position(3)           !< of the point, in the system of link 1 [m]
+    real(wp), intent(in) :: velocity(3)           !< in the axes of link 1 [m/s]
+    real(wp), intent(in) :: acceleration(3)       !< in the axes of link 1; zero: it is left out [m/s^2]
+    real(wp), intent(out) :: x                    !< the variable [unit of the data file]
+    real(wp), intent(out) :: dx                   !< its derivative in time
+    real(wp), intent(out) :: ddx                  !< its second derivative
+
+    ddx = 0.0_wp
+    if (self%is_rate) then
+      x = dot_product(self%direction, velocity)/self%unit
+      dx = dot_product(self%direction, acceleration)/self%unit
+    else
+      x = dot_product(self%direction, position)/self%unit
+      dx = dot_product(self%direction, velocity)/self%unit
+      ddx = dot_product(self%direction, acceleration)/self%unit
+    end if
+  end subroutine follow_point
 
   !> The variable with its derivatives in time, where it is a coordinate or a rate. The second derivative of a rate is left out.
   pure subroutine follow(self, q, dq, ddq, x, dx, ddx)

@@ -76,6 +76,7 @@ module mech9_motor
     procedure, non_overridable :: find_law
     procedure, non_overridable :: vary_law
     procedure, non_overridable :: change_of_motion
+    procedure, non_overridable :: add_shift
     procedure :: mark_links
     procedure :: mark_coordinates
     procedure :: apply
@@ -136,7 +137,7 @@ contains
     motion%t = view%t
     motion%q = view%q(self%coordinate)
     motion%dq = view%dq(self%coordinate)
-    if (allocated(self%over)) call self%over%follow(view%q, view%dq, [real(wp) ::], motion%x, motion%dx, motion%ddx)
+    if (allocated(self%over)) call self%over%find_motion(view, motion%x, motion%dx)
     motion%steady = .not. allocated(view%motor)
     if (motion%steady) return
     motion%value = view%motor(self%number)
@@ -167,10 +168,12 @@ contains
     excess = 0.0_wp
   end function excess_of
 
-  !> The motor acts on a coordinate and requests no link.
+  !> Mark the link of the point on which its law depends. The motor itself acts on a coordinate.
   pure subroutine mark_links(self, needed)
     class(motor_type), intent(in) :: self   !< the motor
-    logical, intent(inout) :: needed(:)     !< (N) unchanged
+    logical, intent(inout) :: needed(:)     !< (N) becomes true for this link; others stay
+
+    if (allocated(self%over)) call self%over%mark_links(needed)
   end subroutine mark_links
 
   !> The law of the motor, with its derivatives in time: 1 where it has none. Fails where the law has no value.
@@ -204,7 +207,8 @@ contains
     class(motor_type), intent(in) :: self                !< the motor
     type(motor_motion_type), intent(in) :: motion        !< with time and variable
     type(motor_motion_type), intent(in) :: moved         !< derivatives of the variable and of its rate
-    real(wp), intent(in) :: numbers(:)                   !< derivatives of the numbers of the law; of size 0: all are zero
+    real(wp), intent(in) :: numbers(:)                   !< derivatives of the numbers of the law, behind those of its point,
+                                                         !< which count in `moved`; of size 0: all are zero
     real(wp), intent(out) :: value                       !< derivative of the law
     real(wp), intent(out) :: rate                        !< derivative of its rate in time
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
@@ -220,25 +224,43 @@ contains
       value = slope*moved%x
       rate = bending*motion%dx*moved%x + slope*moved%dx
       if (size(numbers) == 0) return
-      call self%over%law%vary(numbers, motion%x, by_numbers, slope_by_numbers, unused)
+      call self%over%law%vary(numbers(self%over%own_numbers() + 1:), motion%x, by_numbers, slope_by_numbers, unused)
       value = value + by_numbers
       rate = rate + slope_by_numbers*motion%dx
     end if
   end subroutine vary_law
 
-  !> The derivative of the motion of the motor's coordinate and of the variable of its law, from those of all coordinates.
-  pure function change_of_motion(self, q, dq) result(moved)
-    class(motor_type), intent(in) :: self    !< the motor
-    real(wp), intent(in) :: q(:)             !< (M) derivatives of coordinates
-    real(wp), intent(in) :: dq(:)            !< (M) derivatives of their rates
+  !> The derivative of the motion of the motor's coordinate, of its state and of the variable of its law, from those of all
+  !> coordinates and of the links on whose motion the law depends.
+  pure function change_of_motion(self, state, change) result(moved)
+    class(motor_type), intent(in) :: self            !< the motor
+    type(motion_view_type), intent(in) :: state      !< present motion of links and coordinates
+    type(motion_change_type), intent(in) :: change   !< derivative of the motion by a parameter
     type(motor_motion_type) :: moved
 
-    moved%q = q(self%coordinate)
-    moved%dq = dq(self%coordinate)
-    if (allocated(self%over)) call self%over%follow(q, dq, [real(wp) ::], moved%x, moved%dx, moved%ddx)
+    moved%q = change%q(self%coordinate)
+    moved%dq = change%dq(self%coordinate)
+    if (allocated(change%motor)) moved%value = change%motor(self%number)
+    if (allocated(self%over)) call self%over%change_of_motion(state, change, moved%x, moved%dx)
   end function change_of_motion
 
-  !> Mark its coordinate, and that on which its law depends.
+  !> Add the derivative of the variable of the motor's law by a parameter on which the place of its point depends.
+  pure subroutine add_shift(self, state, numbers, moved)
+    class(motor_type), intent(in) :: self              !< the motor
+    type(motion_view_type), intent(in) :: state        !< present motion of links and coordinates
+    real(wp), intent(in) :: numbers(:)                 !< derivatives of its numbers, as of `constants`
+    type(motor_motion_type), intent(inout) :: moved    !< gets it
+    real(wp), allocatable :: own(:)
+    real(wp) :: x, dx
+
+    if (.not. allocated(self%over)) return
+    call self%numbers(own)
+    call self%over%change_by_shift(state, numbers(size(own) + 1:), x, dx)
+    moved%x = moved%x + x
+    moved%dx = moved%dx + dx
+  end subroutine add_shift
+
+  !> Mark its coordinate, and that on which its law depends, where this is one.
   pure subroutine mark_coordinates(self, needed)
     class(motor_type), intent(in) :: self   !< the motor
     logical, intent(inout) :: needed(:)     !< (M) becomes true for both coordinates; others stay
@@ -270,8 +292,7 @@ contains
     type(motor_motion_type) :: moved
     type(motor_change_type) :: motor_change
 
-    moved = self%change_of_motion(change%q, change%dq)
-    if (allocated(change%motor)) moved%value = change%motor(self%number)
+    moved = self%change_of_motion(state, change)
     call self%vary_act(motion_of_motor(self, state), moved, [real(wp) ::], motor_change, err)
     if (.not. allocated(err)) call changes%add_generalized(self%coordinate, motor_change%force)
   end subroutine vary
@@ -284,9 +305,11 @@ contains
     type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates, with the motors' states
     type(force_sum_type), intent(inout) :: changes      !< derivatives of forces so far; those of the motor are added
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    type(motor_motion_type) :: moved
     type(motor_change_type) :: motor_change
 
-    call self%vary_act(motion_of_motor(self, state), motor_motion_type(), change, motor_change, err)
+    call self%add_shift(state, change, moved)
+    call self%vary_act(motion_of_motor(self, state), moved, change, motor_change, err)
     if (.not. allocated(err)) call changes%add_generalized(self%coordinate, motor_change%force)
   end subroutine vary_numbers
 

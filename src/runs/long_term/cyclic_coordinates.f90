@@ -37,7 +37,7 @@ contains
     type(mechanism_type), intent(in) :: mechanism    !< the mechanism
     integer, intent(in) :: k                         !< number of the coordinate
     logical, intent(out) :: is_cyclic                !< it is cyclic
-    logical :: behind(mechanism%structure%n_links), marked(mechanism%structure%n_coordinates)
+    logical :: behind(mechanism%structure%n_links), links(mechanism%structure%n_links), marked(mechanism%structure%n_coordinates)
     integer :: i
 
     call find_links_behind(mechanism, k, behind)
@@ -47,10 +47,12 @@ contains
     end do
     if (mechanism%has_frictions()) is_cyclic = is_cyclic .and. all(mechanism%frictions%coordinate /= k)
     marked = .false.
+    links = .false.
     do i = 1, size(mechanism%motors)
       call mechanism%motors(i)%motor%mark_coordinates(marked)
+      call mechanism%motors(i)%motor%mark_links(links)
     end do
-    is_cyclic = is_cyclic .and. .not. marked(k)
+    is_cyclic = is_cyclic .and. .not. (marked(k) .or. any(links .and. behind))
     do i = 1, size(mechanism%loads)
       if (is_cyclic) call judge_load(mechanism, i, k, behind, is_cyclic)
     end do

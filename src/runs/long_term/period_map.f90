@@ -16,7 +16,7 @@ module mech9_period_map
   use mech9_state, only: state_type, copy_state
   use mech9_frame_motion, only: place_all
   use mech9_branch_stepping, only: set_inputs
-  use mech9_motor_states, only: start_motors, find_limits
+  use mech9_motor_states, only: start_motors
   use mech9_motion_view, only: unlocked
   use mech9_nearby_position, only: find_nearby_position
   use mech9_sensitivity, only: sensitivity_type
@@ -287,7 +287,6 @@ contains
       call set_inputs(self%model%problem%drives, t, moved%q, moved%dq, moved%ddq, err)
       if (.not. allocated(err)) call place_all(plan, moved, err)
       if (allocated(moved%limited)) moved%limited = unlocked
-      if (.not. allocated(err)) call find_limits(self%model%mechanism, moved, err)
       if (.not. allocated(err)) call copy_state(moved, self%start)
     end associate
   end subroutine place_start

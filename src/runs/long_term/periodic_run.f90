@@ -2,7 +2,7 @@
 module mech9_periodic_run
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_motor_states, only: start_motors, find_limits
+  use mech9_motor_states, only: start_motors
   use mech9_model, only: model_type
   use mech9_model_motion, only: model_motion_type
   use mech9_periodic_motion, only: periodic_motion_type
@@ -44,6 +44,5 @@ contains
     if (size(motion%motor) == 0) return
     call start_motors(model%mechanism, run%start)
     run%start%motor = motion%motor
-    call find_limits(model%mechanism, run%start, err)
   end subroutine start_periodic
 end module mech9_periodic_run

@@ -16,7 +16,7 @@ module mech9_state_rates
   use mech9_state, only: state_type
   use mech9_frame_motion, only: place_all
   use mech9_branch_stepping, only: set_inputs
-  use mech9_motor_states, only: start_motors, find_limits
+  use mech9_motor_states, only: start_motors
   use mech9_motion_view, only: unlocked
   use mech9_nearby_position, only: find_nearby_position
   use mech9_resting_plan, only: plan_by_geometry
@@ -305,7 +305,6 @@ contains
       if (allocated(err)) return
       state%dq(self%free) = rates
       if (allocated(state%limited)) state%limited = unlocked
-      call find_limits(self%model%mechanism, self%state, err)
     end associate
   end subroutine set_rates
 

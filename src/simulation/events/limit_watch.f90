@@ -59,7 +59,7 @@ contains
 
     allocate (demand(size(system%model%mechanism%motors)), rate(size(system%model%mechanism%motors)), source=0.0_wp)
     do i = 1, size(demand)
-      call find_action(system%model%mechanism, i, system%state, action, err)
+      call find_action(system%model%mechanism, system%plan, i, system%state, action, err)
       if (allocated(err)) return
       demand(i) = action%demand
       rate(i) = action%demand_rate
@@ -112,7 +112,7 @@ contains
     type(motor_action_type) :: action
 
     beyond = 0.0_wp
-    call find_action(system%model%mechanism, motor, system%state, action, err)
+    call find_action(system%model%mechanism, system%plan, motor, system%state, action, err)
     if (.not. allocated(err)) beyond = excess(system%state%limited(motor), action%demand)
   end subroutine find_excess
 end module mech9_limit_watch

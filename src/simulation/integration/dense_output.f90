@@ -254,7 +254,7 @@ contains
     point%dq = system%state%dq
     point%ddq = system%state%ddq
     do i = 1, size(system%model%mechanism%motors)
-      call find_action(system%model%mechanism, i, system%state, action, err)
+      call find_action(system%model%mechanism, system%plan, i, system%state, action, err)
       if (allocated(err)) return
       point%q = [point%q, system%state%motor(i)]
       point%dq = [point%dq, action%rate]

@@ -13,6 +13,7 @@ module mech9_motion_system
   use mech9_integration_failures, only: failure_singular_step, failure_unclosed_step, failure_drive_jumps
   use mech9_law, only: drive_slot_type
   use mech9_partition, only: partition_type
+  use mech9_motion_view, only: unlocked
   use mech9_motor, only: motor_action_type
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
@@ -118,8 +119,7 @@ contains
       call make_dynamics_plan(model%mechanism, system%plan, system%dynamics)
     end if
     call make_work(system%plan, system%dynamics, system%work)
-    call place_motors(system, err)
-    if (allocated(err)) return
+    call start_motors(model%mechanism, system%state)
     if (model%mechanism%has_frictions()) then
       if (.not. allocated(system%friction)) allocate (system%friction)
       call begin_frictions(model%mechanism, system%state, system%friction)
@@ -138,6 +138,7 @@ contains
     if (system%dynamics%articulated) &
       call find_equations(model%mechanism, system%plan, system%dynamics, system%state, system%work, err)
     if (.not. allocated(err)) call system%present(err)
+    if (.not. allocated(err)) call begin_limits(system, err)
     if (.not. allocated(err)) call check_inertia(system%plan, system%dynamics, system%work, err)
     system%has_inertia = .not. allocated(err)
     call point_at_pair(model, err)
@@ -200,15 +201,14 @@ contains
     end if
   end subroutine accelerate
 
-  !> Let the motors begin, unless they work already.
-  subroutine place_motors(self, err)
-    class(motion_system_type), intent(inout) :: self    !< the motion system; its state gets those of the motors
+  !> Let the motors begin to work at limits, unless they do already: from here on these change at events alone.
+  subroutine begin_limits(self, err)
+    class(motion_system_type), intent(inout) :: self    !< the motion system, with all rates; its state gets the limits
     type(error_type), allocatable, intent(out) :: err   !< allocated if the law of a motor has no value
 
-    if (size(self%model%mechanism%motors) == 0 .or. allocated(self%state%motor)) return
-    call start_motors(self%model%mechanism, self%state)
-    call find_limits(self%model%mechanism, self%state, err)
-  end subroutine place_motors
+    if (.not. allocated(self%state%limited)) return
+    if (any(self%state%limited == unlocked)) call find_limits(self%model%mechanism, self%plan, self%state, err)
+  end subroutine begin_limits
 
   !> Let another system hold the same coordinates, and let its frictions act in the same way.
   subroutine hand_on_modes(self, other)
@@ -355,12 +355,12 @@ contains
     if (size(self%model%mechanism%motors) == 0) return
     before = 0
     if (self%interval%motor > 0) before = self%state%limited(self%interval%motor)
-    call find_limits(self%model%mechanism, self%state, err)
+    call find_limits(self%model%mechanism, self%plan, self%state, err)
     if (allocated(err)) return
     if (self%interval%motor > 0) then
       ! the demand is the limit but for round-off, which must not decide
       self%state%limited(self%interval%motor) = 0
-      call find_action(self%model%mechanism, self%interval%motor, self%state, action, err)
+      call find_action(self%model%mechanism, self%plan, self%interval%motor, self%state, action, err)
       if (allocated(err)) return
       if (before == 0) self%state%limited(self%interval%motor) = nint(sign(1.0_wp, action%demand))
       self%interval%motor = 0
@@ -402,7 +402,7 @@ contains
       return
     end if
     if (self%just_projected) call remember(self)
-    call find_motor_rates(self%model%mechanism, self%state, err)
+    call find_motor_rates(self%model%mechanism, self%plan, self%state, err)
     if (allocated(err)) return
     call pack_rates(self%plan, self%state, self%work%accelerations, ydot)
     if (.not. allocated(self%sensitivity)) return
@@ -544,7 +544,7 @@ contains
     if (allocated(self%friction)) call find_heat_rates(self%model%mechanism, self%state, self%friction)
     if (allocated(self%held)) &
       call find_stop_forces(self%model%mechanism, self%plan, self%dynamics, self%held, self%state, self%work, err)
-    if (.not. allocated(err)) call find_motor_rates(self%model%mechanism, self%state, err)
+    if (.not. allocated(err)) call find_motor_rates(self%model%mechanism, self%plan, self%state, err)
     if (.not. allocated(err)) call show_state(self%plan, self%dynamics, self%state, self%work%view)
     if (allocated(self%sensitivity) .and. .not. allocated(err)) call vary_accelerations(self, err, with_sticking=.true.)
   end subroutine show_present
