@@ -7,10 +7,10 @@ module mech9_after_run
   use mech9_path, only: ending_of
   use mech9_diagnostics, only: printable
   use mech9_kept_rows, only: kept_rows_type
-  use mech9_rows_text, only: rows_text, all_rows_text, columns_that_fit, all_digits
+  use mech9_rows_text, only: rows_text, all_rows_text, head_of, columns_that_fit, all_digits
   use mech9_run_comparison, only: comparison_type, compare_runs, comparison_text
   use mech9_plot, only: plot_columns
-  use mech9_part_names, only: number_columns, name_column
+  use mech9_part_names, only: number_columns
   use mech9_heading, only: new_heading
   use mech9_plot_request, only: is_picture
   use mech9_grammar, only: words_of
@@ -145,7 +145,6 @@ contains
     type(draft_type), intent(in) :: draft                    !< the data file
     logical, intent(in) :: with_rest                         !< the program answers about equilibrium
     type(string_type), allocatable, intent(out) :: words(:)  !< the commands and the names of the columns
-    character(len=:), allocatable :: column
     integer :: i
 
     allocate (words(0))
@@ -155,9 +154,7 @@ contains
     if (kept%count > 0) then
       do i = 1, size(kept%names)
         call add_word(kept%names(i)%text, words)
-        column = kept%names(i)%text
-        call name_column(kept%parts, column)
-        call add_word(column, words)
+        call add_word(head_of(kept, i), words)
       end do
     end if
     call add_known_names(draft, words)
@@ -168,7 +165,15 @@ contains
     class(conversation_type), intent(in) :: conversation  !< the conversation as it stands
     type(kept_rows_type), intent(in) :: kept              !< results of the last run
 
-    if (kept%count > 0) call conversation%say('The columns: '//join(kept%names, ' '))
+    type(string_type), allocatable :: heads(:)
+    integer :: i
+
+    if (kept%count == 0) return
+    allocate (heads(size(kept%names)))
+    do i = 1, size(heads)
+      heads(i)%text = head_of(kept, i)
+    end do
+    call conversation%say('The columns: '//join(heads, ' '))
   end subroutine say_columns
 
   !> Whether there are results to look at. If there are none, tell the user.
@@ -241,7 +246,7 @@ contains
     if (.not. has_rows(conversation, kept)) return
     labels = kept%names
     do i = 1, size(labels)
-      call name_column(kept%parts, labels(i)%text)
+      labels(i)%text = head_of(kept, i)
     end do
     request = what
     call number_columns(kept%parts, request)

@@ -2,13 +2,15 @@
 module mech9_rows_text
   use mech9_text, only: to_text
   use mech9_counted, only: counted
+  use mech9_part_names, only: name_column
+  use mech9_printable, only: utf8_length
   use mech9_kept_rows, only: kept_rows_type
   implicit none
   private
-  public :: rows_text, all_rows_text, columns_that_fit, digits_of_summary, all_digits
+  public :: rows_text, all_rows_text, head_of, letters_of, columns_that_fit, digits_of_summary, all_digits
 
-  !> Columns that fit on 80 letters.
-  integer, parameter :: columns_that_fit = 6
+  !> Columns that fit on 80 letters, and the letters that they take, unless their names are long.
+  integer, parameter :: columns_that_fit = 6, letters_that_fit = 78
   !> Significant digits of rows of a run, of a short table, and of a whole one.
   integer, parameter :: digits_of_rows = 7, digits_of_summary = 3, all_digits = 17
   character, parameter :: eol = achar(10)
@@ -34,13 +36,21 @@ contains
     type(kept_rows_type), intent(in) :: kept  !< rows that were kept
     integer, intent(in) :: digits             !< significant digits of each number
     character(len=:), allocatable :: text
-    integer :: first, i, others
+    integer :: first, last, i, width
 
     text = ''
-    others = columns_that_fit*width_of(digits_of_rows)/width_of(digits) - 1
-    others = min(others, columns_that_fit - 1)
-    do first = 2, max(2, size(kept%names)), others
-      text = text//block_text(kept, [1, (i, i=first, min(first + others - 1, size(kept%names)))], kept%count, digits)
+    first = 2
+    do
+      width = column_width(kept, 1, digits) + column_width(kept, first, digits)
+      last = first
+      do while (last < size(kept%names))
+        width = width + column_width(kept, last + 1, digits)
+        if (width > letters_that_fit) exit
+        last = last + 1
+      end do
+      text = text//block_text(kept, [1, (i, i=first, min(last, size(kept%names)))], kept%count, digits)
+      first = last + 1
+      if (first > size(kept%names)) exit
     end do
   end function all_rows_text
 
@@ -51,21 +61,21 @@ contains
     integer, intent(in) :: shown              !< how many rows
     integer, intent(in) :: digits             !< significant digits of each number
     character(len=:), allocatable :: text
-    integer :: i, k, width
+    integer :: i, k, widths(size(columns))
 
     text = ''
-    width = width_of(digits)
     do k = 1, size(columns)
-      text = text//at_right(kept%names(columns(k))%text, width)
+      widths(k) = column_width(kept, columns(k), digits)
+      text = text//at_right(head_of(kept, columns(k)), widths(k))
     end do
     text = text//eol
     do k = 1, size(columns)
-      text = text//at_right(kept%units(columns(k))%text, width)
+      text = text//at_right(kept%units(columns(k))%text, widths(k))
     end do
     text = text//eol
     do i = kept%count - shown + 1, kept%count
       do k = 1, size(columns)
-        text = text//at_right(to_text(kept%rows(columns(k), i), digits), width)
+        text = text//at_right(to_text(kept%rows(columns(k), i), digits), widths(k))
       end do
       text = text//eol
     end do
@@ -77,8 +87,41 @@ contains
     integer, intent(in) :: width          !< of the column
     character(len=:), allocatable :: padded
 
-    padded = repeat(' ', max(1, width - len(text)))//text
+    padded = repeat(' ', max(1, width - letters_of(text)))//text
   end function at_right
+
+  !> The name of a column by the names of links and pairs, where they have any: B.q in place of q2.
+  pure function head_of(kept, column) result(head)
+    type(kept_rows_type), intent(in) :: kept    !< rows that were kept
+    integer, intent(in) :: column               !< number of the column
+    character(len=:), allocatable :: head
+
+    head = kept%names(column)%text
+    call name_column(kept%parts, head)
+  end function head_of
+
+  !> How many letters a text in UTF-8 has.
+  pure integer function letters_of(text) result(letters)
+    character(len=*), intent(in) :: text   !< the text
+    integer :: i
+
+    letters = 0
+    i = 1
+    do while (i <= len(text))
+      i = i + max(1, utf8_length(text, i))
+      letters = letters + 1
+    end do
+  end function letters_of
+
+  !> The width of a column with its name and the blank before it.
+  pure integer function column_width(kept, column, digits)
+    type(kept_rows_type), intent(in) :: kept   !< rows that were kept
+    integer, intent(in) :: column              !< number of the column; behind the last one: of none
+    integer, intent(in) :: digits              !< significant digits of each number
+
+    column_width = width_of(digits)
+    if (column <= size(kept%names)) column_width = max(column_width, 1 + letters_of(head_of(kept, column)))
+  end function column_width
 
   !> The width of a column: a blank, a sign, a point and an exponent beside the digits, but no less than that of 7 digits, which most
   !> names fit.

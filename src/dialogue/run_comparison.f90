@@ -3,6 +3,7 @@ module mech9_run_comparison
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
   use mech9_counted, only: counted
+  use mech9_rows_text, only: head_of, letters_of
   use mech9_kept_rows, only: kept_rows_type
   implicit none
   private
@@ -33,6 +34,8 @@ module mech9_run_comparison
   real(wp), parameter :: as_good_as_zero = 1.0e-10_wp
   !> Most lines of a comparison, so that it fits on a screen.
   integer, parameter :: most_lines = 15
+  !> Width of the first column of a comparison, which most names fit.
+  integer, parameter :: usual_width = 16
   character, parameter :: eol = achar(10)
 
 contains
@@ -143,13 +146,13 @@ contains
     list = [list(:place), difference, list(place + 1:)]
   end subroutine insert
 
-  !> A comparison in words, as whole lines of at most 79 letters.
+  !> A comparison in words, as whole lines of at most 79 letters unless names are long.
   pure function comparison_text(comparison, later) result(text)
     type(comparison_type), intent(in) :: comparison  !< the differences
     type(kept_rows_type), intent(in) :: later        !< rows of the later run
-    character(len=:), allocatable :: text
-    character(len=79) :: line
-    integer :: i, alike
+    character(len=:), allocatable :: text, head
+    character(len=63) :: line
+    integer :: i, alike, shown, width
 
     if (comparison%times == 0) then
       text = 'The two runs have no time in common.'//eol
@@ -165,15 +168,20 @@ contains
     alike = comparison%same + comparison%alike
     text = text//counted(size(comparison%columns), 'column')//trim(merge(' differs', ' differ ', size(comparison%columns) == 1))// &
            ', '//to_text(alike)//trim(merge(' does', ' do  ', alike == 1))//' not.'//eol
-    write (line, '(a16,5a12)') 'column', 'difference', 'of largest', 'at t [s]', 'before', 'now'
-    text = text//trim(line)//eol
-    do i = 1, min(size(comparison%columns), most_lines)
+    shown = min(size(comparison%columns), most_lines)
+    width = usual_width
+    do i = 1, shown
+      width = max(width, letters_of(head_of(later, comparison%columns(i)%column)))
+    end do
+    write (line, '(5a12)') 'difference', 'of largest', 'at t [s]', 'before', 'now'
+    text = text//repeat(' ', width - len('column'))//'column'//trim(line)//eol
+    do i = 1, shown
       associate (column => comparison%columns(i))
-        write (line, '(a16,5a12)') later%names(column%column)%text, to_text(column%difference, 4), &
-          to_text(100.0_wp*column%share, 3)//' %', to_text(column%time, 5), to_text(column%before, 5), &
-          to_text(column%after, 5)
+        head = head_of(later, column%column)
+        write (line, '(5a12)') to_text(column%difference, 4), to_text(100.0_wp*column%share, 3)//' %', to_text(column%time, 5), &
+          to_text(column%before, 5), to_text(column%after, 5)
       end associate
-      text = text//trim(line)//eol
+      text = text//repeat(' ', width - letters_of(head))//head//trim(line)//eol
     end do
     if (size(comparison%columns) > most_lines) &
       text = text//'and '//counted(size(comparison%columns) - most_lines, 'column')//' with smaller differences.'//eol

@@ -154,6 +154,7 @@ contains
     if (allocated(err)) return
     if (present(kept)) then
       call kept%begin(model%mechanism%title, columns%names(:columns%count), columns%units(:columns%count), size(rows, 2))
+      kept%parts = model%mechanism%names
       call kept%take(rows)
     end if
     call write_table(options, model, columns, rows, err)

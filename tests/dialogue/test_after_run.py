@@ -93,6 +93,27 @@ def test_show(session):
     checks.true(all(len(line) <= 79 for text in said for line in text.splitlines()), 'show: within 80 columns')
 
 
+def test_names_head_the_columns(checks, mech9k, mech9d, tmp_path):
+    """Columns of pairs and links with names are headed by these in show, compare and equilibria; numbers are understood as well."""
+    session = Session(checks, mech9k, 'four_bar_homework', os.fspath(tmp_path))
+    said, _ = session.after_run('show 2 q4 coupler.phi', '?', 'change drive 1 coefficients = 40, 26', 'run', 'compare', 'show 1 A.q B.q O4.dq', 'done')
+    checks.equal(rows_shown(said[0])[0], ['t', 'O4.q', 'coupler.phi'], 'show: names')
+    checks.true('O2.q A.q B.q O4.q' in ' '.join(said[1].split()), '?: the columns by names', said[1])
+    compared = re.findall(r'^ *(\S+) +(\S+) +(\S+) % +', said[4], re.M)
+    checks.true(any('coupler.' in name for name, _, _ in compared) and not any(re.match(r'd*q\d', name) for name, _, _ in compared),
+                'compare: names', said[4])
+    checks.equal(rows_shown(said[5])[0], ['t', 'A.q', 'B.q', 'O4.dq'], 'show: names that are asked for')
+    path = os.path.join(session.folder, 'swing.nml')
+    with open(path, 'w', encoding='utf-8') as file:
+        file.write("""&mechanism title='swing' / &structure cq=1 / &pair coordinate=1, links=1,2, kind='revolute', name='Kurbelzapfen_hinten', axis=0,0,1 /
+&body link=2, mass=1, centre=0.3,0,0 / &gravity acceleration=0,-9.81,0 / &initial coordinate=1, position=0.2 /
+&motor coordinate=1, kind='dc', resistance=1, constant=1, voltage=0.5 / &time end=1, intervals=10 /
+""")
+    done = run(mech9d, '--edit', path, folder=session.folder, stdin='\nrun\nequilibrium\nshow\ndone\n')
+    lines = [line.split() for line in done.stderr.splitlines() if 'Kurbelzapfen_hinten.q' in line]
+    checks.true(sum('equilibrium' in words for words in lines) >= 2, 'equilibrium and show: names', done.stderr)
+
+
 def test_bare_change(session):
     said, _ = session.after_run('change', 'done')
     session.checks.true('which answer' in said[0], 'change alone: what is missing is said', said[0])
