@@ -14,51 +14,67 @@
 module mech9_articulated_bodies
   use mech9_kinds, only: wp
   use mech9_rotation, only: turn, turn_back, combine, cross
+  use mech9_state, only: state_type
   implicit none
   private
-  public :: articulated_type, articulated_work_type, new_articulated, new_articulated_work, add_to_frame, set_bodies, &
-    go_inward, go_outward, pass_inward, pass_outward, rigid_inertia, add_to_parent, body_wrench, set_rigid_body, in_fixed_axes
+  public :: rigid_body_type, articulated_body_type, chain_step_type, articulated_type, articulated_work_type, new_articulated, &
+    new_articulated_work, add_to_rigid_body, set_bodies, go_inward, go_outward, pass_inward, pass_outward, rigid_inertia, &
+    add_to_parent, body_wrench, set_rigid_body, in_fixed_axes
+
+  !> Bodies that move with one frame, together, in its axes.
+  type :: rigid_body_type
+    real(wp) :: mass = 0.0_wp          !< [kg]
+    real(wp) :: moment(3) = 0.0_wp     !< mass times centre, from the frame's origin [kg m]
+    real(wp) :: tensor(3, 3) = 0.0_wp  !< inertia about the frame's origin [kg m^2]
+  end type rigid_body_type
+
+  !> All links beyond a step as one body that resists a motion of the step's frame, in fixed axes.
+  type :: articulated_body_type
+    real(wp) :: inertia(3, 9) = 0.0_wp   !< J, H, M side by side [kg m^2, kg m, kg]
+    real(wp) :: wrench(6) = 0.0_wp       !< torque_0 about the frame's origin, and force_0 [N m, N]
+    real(wp) :: amount(5) = 0.0_wp       !< as if rigid: mass, moment, sum of m r^2 [kg, kg m, kg m^2]
+  end type articulated_body_type
+
+  !> A step whose acceleration is eliminated.
+  type :: eliminated_step_type
+    real(wp) :: column(6) = 0.0_wp   !< U
+    real(wp) :: pivot = 0.0_wp       !< D
+    real(wp) :: rest = 0.0_wp        !< Q - S . wrench_0
+  end type eliminated_step_type
+
+  !> A step as the passes use it.
+  type :: chain_step_type
+    integer :: parent = 0         !< frame from which the step departs, 0 for that of link 1
+    integer :: coordinate = 0     !< number of its coordinate
+    integer :: place = 0          !< place of the coordinate among the independent ones, or 0
+    logical :: slides = .false.   !< the frame's origin moves by its own step
+  end type chain_step_type
 
   !> The steps and bodies of a mechanism in the form that the passes use. Indices are the numbers of frames, which are those of
   !> the steps.
   type :: articulated_type
-    integer, allocatable :: parent(:)            !< (M) frame from which each step departs, 0 for that of link 1
-    integer, allocatable :: coordinate(:)        !< (M) number of the coordinate of each step
-    integer, allocatable :: place(:)             !< (M) its place among the independent coordinates, or 0
-    logical, allocatable :: slides(:)            !< (M) the frame's origin moves by its own step
-    real(wp), allocatable :: mass(:)             !< (M) of the frame's bodies together [kg]
-    real(wp), allocatable :: moment(:, :)        !< (3,M) mass times centre, in the frame [kg m]
-    real(wp), allocatable :: inertia(:, :, :)    !< (3,3,M) about the frame's origin, in the frame [kg m^2]
+    type(chain_step_type), allocatable :: steps(:)    !< (M)
+    type(rigid_body_type), allocatable :: bodies(:)   !< (M) those of each frame
   end type articulated_type
 
   !> Scratch of the passes, sized once, in fixed axes. A wrench is (torque about the frame's origin, force) [N m, N]; a
   !> motion is (angular acceleration, acceleration of the frame's origin) [rad/s^2, m/s^2].
   type :: articulated_work_type
-    real(wp), allocatable :: applied(:, :)       !< (6,M) wrench of the loads on each frame: to be set before
-    real(wp), allocatable :: inertia(:, :, :)    !< (3,9,0:M) J, H, M side by side [kg m^2, kg m, kg]
-    real(wp), allocatable :: wrench(:, :)        !< (6,0:M) torque_0 and force_0
-    real(wp), allocatable :: column(:, :)        !< (6,M) U
-    real(wp), allocatable :: pivot(:)            !< (M) D
-    real(wp), allocatable :: rest(:)             !< (M) Q - S . wrench_0
-    real(wp), allocatable :: amount(:, :)        !< (5,0:M) links beyond a step, as if rigid: mass, moment, sum of m r^2
-    real(wp), allocatable :: motion(:, :)        !< (6,0:M) accelerations less those that rates alone give
+    real(wp), allocatable :: applied(:, :)                  !< (6,M) wrench of the loads on each frame: to be set before
+    type(articulated_body_type), allocatable :: bodies(:)   !< (0:M) the frame's own bodies, then with all links beyond it
+    type(eliminated_step_type), allocatable :: steps(:)     !< (M)
+    real(wp), allocatable :: motion(:, :)                   !< (6,0:M) accelerations less those that rates alone give
   end type articulated_work_type
 
 contains
 
-  !> A mechanism whose frames have no mass yet; `add_to_frame` gives them mass.
-  pure function new_articulated(parent, coordinate, place, slides) result(chains)
-    integer, intent(in) :: parent(:)       !< (M) frame from which each step departs
-    integer, intent(in) :: coordinate(:)   !< (M) number of the coordinate of each step
-    integer, intent(in) :: place(:)        !< (M) its place among the independent coordinates, or 0
-    logical, intent(in) :: slides(:)       !< (M) whether the frame's origin moves by its own step
+  !> A mechanism whose frames have no mass yet; `add_to_rigid_body` gives them mass.
+  pure function new_articulated(steps) result(chains)
+    type(chain_step_type), intent(in) :: steps(:)   !< (M) its steps
     type(articulated_type) :: chains
 
-    chains%parent = parent
-    chains%coordinate = coordinate
-    chains%place = place
-    chains%slides = slides
-    allocate (chains%mass(size(parent)), chains%moment(3, size(parent)), chains%inertia(3, 3, size(parent)), source=0.0_wp)
+    chains%steps = steps
+    allocate (chains%bodies(size(steps)))
   end function new_articulated
 
   !> Room for the passes over a number of steps, without loads.
@@ -66,63 +82,70 @@ contains
     integer, intent(in) :: m   !< number of steps
     type(articulated_work_type) :: work
 
-    allocate (work%applied(6, m), work%column(6, m), work%pivot(m), work%rest(m), source=0.0_wp)
-    allocate (work%inertia(3, 9, 0:m), work%wrench(6, 0:m), work%amount(5, 0:m), work%motion(6, 0:m), source=0.0_wp)
+    allocate (work%bodies(0:m), work%steps(m))
+    allocate (work%applied(6, m), work%motion(6, 0:m), source=0.0_wp)
   end function new_articulated_work
 
-  !> Add the mass and inertia of a body to the frame with which it moves.
-  pure subroutine add_to_frame(chains, frame, mass, centre, inertia)
-    type(articulated_type), intent(inout) :: chains   !< the mechanism
-    integer, intent(in) :: frame                      !< number of the frame
-    real(wp), intent(in) :: mass                      !< of the body [kg]
-    real(wp), intent(in) :: centre(3)                 !< mass centre, from the frame's origin, in the frame's axes [m]
-    real(wp), intent(in) :: inertia(3, 3)             !< tensor about the centre, in the frame's axes [kg m^2]
+  !> Add the mass and inertia of a body to those that move with its frame.
+  pure subroutine add_to_rigid_body(total, mass, centre, inertia)
+    type(rigid_body_type), intent(inout) :: total   !< the bodies of the frame
+    real(wp), intent(in) :: mass                    !< of the body [kg]
+    real(wp), intent(in) :: centre(3)               !< mass centre, from the frame's origin, in the frame's axes [m]
+    real(wp), intent(in) :: inertia(3, 3)           !< tensor about the centre, in the frame's axes [kg m^2]
     integer :: i
 
-    chains%mass(frame) = chains%mass(frame) + mass
-    chains%moment(:, frame) = chains%moment(:, frame) + mass*centre
-    associate (total => chains%inertia(:, :, frame))
-      do i = 1, 3
-        total(:, i) = total(:, i) + inertia(:, i) - mass*centre*centre(i)
-        total(i, i) = total(i, i) + mass*dot_product(centre, centre)
-      end do
-    end associate
-  end subroutine add_to_frame
+    total%mass = total%mass + mass
+    total%moment = total%moment + mass*centre
+    do i = 1, 3
+      total%tensor(:, i) = total%tensor(:, i) + inertia(:, i) - mass*centre*centre(i)
+      total%tensor(i, i) = total%tensor(i, i) + mass*dot_product(centre, centre)
+    end do
+  end subroutine add_to_rigid_body
 
   !> The inertia of the own bodies of each marked frame in fixed axes, and the wrench that these bodies require for the motion by
   !> rates alone, less that of the loads and of gravity.
-  pure subroutine set_bodies(m, marked, mass, moment, tensor, gravity, r, omega, alpha, a, applied, inertia, wrench, amount)
-    integer, intent(in) :: m                        !< number of steps
-    logical, intent(in) :: marked(0:m)              !< the frames
-    real(wp), intent(in) :: mass(m)                 !< of the bodies of each frame together [kg]
-    real(wp), intent(in) :: moment(3, m)            !< mass times centre, in the frame's axes [kg m]
-    real(wp), intent(in) :: tensor(3, 3, m)         !< inertia about the frame's origin, in its axes [kg m^2]
-    real(wp), intent(in) :: gravity(3)              !< acceleration of free fall, fixed axes [m/s^2]
-    real(wp), intent(in) :: r(3, 3, 0:m)            !< rotation of each frame
-    real(wp), intent(in) :: omega(3, 0:m)           !< angular velocity of each frame, fixed axes [rad/s]
-    real(wp), intent(in) :: alpha(3, 0:m)           !< angular acceleration that rates alone give, fixed axes [rad/s^2]
-    real(wp), intent(in) :: a(3, 0:m)               !< acceleration of each origin that rates alone give, fixed axes [m/s^2]
-    real(wp), intent(in) :: applied(6, m)           !< wrench of the loads on each frame, fixed axes [N m, N]
-    real(wp), intent(inout) :: inertia(3, 9, 0:m)   !< gets J, H, M of each frame but 0
-    real(wp), intent(inout) :: wrench(6, 0:m)       !< gets the wrench of each frame but 0
-    real(wp), intent(inout) :: amount(5, 0:m)       !< gets mass, moment and sum of m r^2 of each frame but 0
-    real(wp) :: h(3), j(3, 3)
-    integer :: s
+  pure subroutine set_bodies(bodies, marked, gravity, state, work)
+    type(rigid_body_type), intent(in), contiguous :: bodies(:)   !< (M) those of each frame
+    logical, intent(in) :: marked(0:*)                   !< the frames
+    real(wp), intent(in) :: gravity(3)                   !< acceleration of free fall, fixed axes [m/s^2]
+    type(state_type), intent(in) :: state                !< with the accelerations that rates alone give
+    type(articulated_work_type), intent(inout) :: work   !< with the loads' wrenches; gets the bodies of each frame but 0
+    integer :: m
 
-    do s = 1, m
-      if (.not. marked(s)) cycle
-      if (mass(s) > 0.0_wp .or. tensor(1, 1, s) + tensor(2, 2, s) + tensor(3, 3, s) > 0.0_wp) then
-        h = turn(r(:, :, s), moment(:, s))
-        j = in_fixed_axes(r(:, :, s), tensor(:, :, s))
-        call set_rigid_body(mass(s), h, j, inertia(:, :, s), amount(:, s))
-        call body_wrench(mass(s), h, j, omega(:, s), alpha(:, s), a(:, s) - gravity, wrench(:, s))
-        wrench(:, s) = wrench(:, s) - applied(:, s)
-      else
-        wrench(:, s) = -applied(:, s)
-        amount(:, s) = 0.0_wp
-        inertia(:, :, s) = 0.0_wp
-      end if
-    end do
+    m = size(bodies)
+    call set_each(bodies, state%r, state%omega, state%alpha, state%a, work%applied, work%bodies)
+
+  contains
+
+    !> The same from plain arrays.
+    pure subroutine set_each(bodies, r, omega, alpha, a, applied, resisting)
+      type(rigid_body_type), intent(in) :: bodies(m)                    !< those of each frame
+      real(wp), intent(in) :: r(3, 3, 0:*)                              !< rotation of each frame
+      real(wp), intent(in) :: omega(3, 0:*)                             !< angular velocity of each frame, fixed axes [rad/s]
+      real(wp), intent(in) :: alpha(3, 0:*)                             !< angular acceleration that rates alone give [rad/s^2]
+      real(wp), intent(in) :: a(3, 0:*)                                 !< acceleration of each origin that rates alone give [m/s^2]
+      real(wp), intent(in) :: applied(6, *)                             !< wrench of the loads on each frame [N m, N]
+      type(articulated_body_type), intent(inout) :: resisting(0:*)      !< gets these of each frame but 0
+      real(wp) :: h(3), j(3, 3)
+      integer :: s
+
+      do s = 1, m
+        if (.not. marked(s)) cycle
+        associate (own => bodies(s), body => resisting(s))
+          if (own%mass > 0.0_wp .or. own%tensor(1, 1) + own%tensor(2, 2) + own%tensor(3, 3) > 0.0_wp) then
+            h = turn(r(:, :, s), own%moment)
+            j = in_fixed_axes(r(:, :, s), own%tensor)
+            call set_rigid_body(own%mass, h, j, body%inertia, body%amount)
+            call body_wrench(own%mass, h, j, omega(:, s), alpha(:, s), a(:, s) - gravity, body%wrench)
+            body%wrench = body%wrench - applied(:, s)
+          else
+            body%wrench = -applied(:, s)
+            body%amount = 0.0_wp
+            body%inertia = 0.0_wp
+          end if
+        end associate
+      end do
+    end subroutine set_each
   end subroutine set_bodies
 
   !> The inertia J, H, M and the amount of a rigid body.
@@ -192,56 +215,62 @@ contains
   end function in_fixed_axes
 
   !> Eliminate the accelerations of a run of open steps, the last one first. All vectors are in fixed axes.
-  pure subroutine go_inward(first, last, m, parent, coordinate, slides, p, axis_w, axis_v, forces, inertia, wrench, amount, &
-                            column, pivot, rest, found)
-    integer, intent(in) :: first                    !< first step of the run
-    integer, intent(in) :: last                     !< last step of the run
-    integer, intent(in) :: m                        !< number of steps of the plan
-    integer, intent(in) :: parent(m)                !< frame from which each step departs
-    integer, intent(in) :: coordinate(m)            !< number of the coordinate of each step
-    logical, intent(in) :: slides(m)                !< whether the frame's origin moves by its own step
-    real(wp), intent(in) :: p(3, 0:m)               !< origin of each frame [m]
-    real(wp), intent(in) :: axis_w(3, m)            !< angular velocity that each step gives per unit rate
-    real(wp), intent(in) :: axis_v(3, m)            !< velocity of the new origin per unit rate
-    real(wp), intent(in) :: forces(m)               !< generalized force on each coordinate [N m or N]
-    real(wp), intent(inout) :: inertia(3, 9, 0:m)   !< J, H, M of each frame's own bodies; then of all links beyond it too
-    real(wp), intent(inout) :: wrench(6, 0:m)       !< torque_0 and force_0 in the same way [N m, N]
-    real(wp), intent(inout) :: amount(5, 0:m)       !< mass, moment and sum of m r^2 in the same way, as if rigid
-    real(wp), intent(inout) :: column(6, m)         !< gets U of each step of the run
-    real(wp), intent(inout) :: pivot(m)             !< gets D of each step of the run
-    real(wp), intent(inout) :: rest(m)              !< gets Q - S . wrench_0 of each step of the run
-    logical, intent(out) :: found                   !< whether all coordinates of the run have inertia
-    real(wp) :: u(6), part(6), arm(3)
-    integer :: s, i
+  pure subroutine go_inward(first, last, steps, state, forces, work, found)
+    integer, intent(in) :: first                         !< first step of the run
+    integer, intent(in) :: last                          !< last step of the run
+    type(chain_step_type), intent(in), contiguous :: steps(:)   !< (M) the steps of the plan
+    type(state_type), intent(in) :: state                !< with origins of the frames and screws of the steps
+    real(wp), intent(in) :: forces(*)                    !< (M) generalized force on each coordinate [N m or N]
+    type(articulated_work_type), intent(inout) :: work   !< with the bodies of the frames; gets the steps of the run
+    logical, intent(out) :: found                        !< whether all coordinates of the run have inertia
+    real(wp) :: round_off
 
-    found = .true.
-    do s = last, first, -1
-      u(1:3) = turn(inertia(:, 1:3, s), axis_w(:, s))
-      u(4:6) = turn_back(inertia(:, 4:6, s), axis_w(:, s))
-      rest(s) = forces(coordinate(s)) - dot_product(axis_w(:, s), wrench(1:3, s))
-      pivot(s) = dot_product(axis_w(:, s), u(1:3))
-      if (slides(s)) then
-        u(1:3) = u(1:3) + turn(inertia(:, 4:6, s), axis_v(:, s))
-        u(4:6) = u(4:6) + turn(inertia(:, 7:9, s), axis_v(:, s))
-        rest(s) = rest(s) - dot_product(axis_v(:, s), wrench(4:6, s))
-        pivot(s) = dot_product(axis_w(:, s), u(1:3)) + dot_product(axis_v(:, s), u(4:6))
-      end if
-      column(:, s) = u
-      ! a pivot within round-off counts as zero, as in the Cholesky factors
-      found = pivot(s) > 8.0_wp*m*epsilon(1.0_wp)*rigid_inertia(amount(:, s), axis_w(:, s), axis_v(:, s))
-      if (.not. found) return
-      if (parent(s) == 0) cycle
-      part = u*(1.0_wp/pivot(s))
-      do i = 1, 3
-        inertia(:, i, s) = inertia(:, i, s) - u(1:3)*part(i)
-        inertia(:, 3 + i, s) = inertia(:, 3 + i, s) - u(1:3)*part(3 + i)
-        inertia(:, 6 + i, s) = inertia(:, 6 + i, s) - u(4:6)*part(3 + i)
+    ! a pivot within round-off counts as zero, as in the Cholesky factors
+    round_off = 8.0_wp*size(steps)*epsilon(1.0_wp)
+    call eliminate(steps, state%p, state%axis_w, state%axis_v, work%bodies, work%steps, found)
+
+  contains
+
+    !> The same from plain arrays.
+    pure subroutine eliminate(steps, p, axis_w, axis_v, bodies, eliminated, found)
+      type(chain_step_type), intent(in) :: steps(*)                  !< the steps of the plan
+      real(wp), intent(in) :: p(3, 0:*)                              !< origin of each frame [m]
+      real(wp), intent(in) :: axis_w(3, *)                           !< angular velocity that each step gives per unit rate
+      real(wp), intent(in) :: axis_v(3, *)                           !< velocity of the new origin per unit rate
+      type(articulated_body_type), intent(inout) :: bodies(0:*)      !< each frame's own bodies; then with all links beyond it
+      type(eliminated_step_type), intent(inout) :: eliminated(*)     !< gets the steps of the run
+      logical, intent(out) :: found                                  !< whether all coordinates of the run have inertia
+      real(wp) :: u(6), part(6)
+      integer :: s, i
+
+      found = .true.
+      do s = last, first, -1
+        associate (step => steps(s), body => bodies(s))
+          u(1:3) = turn(body%inertia(:, 1:3), axis_w(:, s))
+          u(4:6) = turn_back(body%inertia(:, 4:6), axis_w(:, s))
+          eliminated(s)%rest = forces(step%coordinate) - dot_product(axis_w(:, s), body%wrench(1:3))
+          eliminated(s)%pivot = dot_product(axis_w(:, s), u(1:3))
+          if (step%slides) then
+            u(1:3) = u(1:3) + turn(body%inertia(:, 4:6), axis_v(:, s))
+            u(4:6) = u(4:6) + turn(body%inertia(:, 7:9), axis_v(:, s))
+            eliminated(s)%rest = eliminated(s)%rest - dot_product(axis_v(:, s), body%wrench(4:6))
+            eliminated(s)%pivot = dot_product(axis_w(:, s), u(1:3)) + dot_product(axis_v(:, s), u(4:6))
+          end if
+          eliminated(s)%column = u
+          found = eliminated(s)%pivot > round_off*rigid_inertia(body%amount, axis_w(:, s), axis_v(:, s))
+          if (.not. found) return
+          if (step%parent == 0) cycle
+          part = u*(1.0_wp/eliminated(s)%pivot)
+          do i = 1, 3
+            body%inertia(:, i) = body%inertia(:, i) - u(1:3)*part(i)
+            body%inertia(:, 3 + i) = body%inertia(:, 3 + i) - u(1:3)*part(3 + i)
+            body%inertia(:, 6 + i) = body%inertia(:, 6 + i) - u(4:6)*part(3 + i)
+          end do
+          body%wrench = body%wrench + part*eliminated(s)%rest
+          call add_to_parent(p(:, s) - p(:, step%parent), bodies(s), bodies(step%parent))
+        end associate
       end do
-      wrench(:, s) = wrench(:, s) + part*rest(s)
-      arm = p(:, s) - p(:, parent(s))
-      call add_to_parent(arm, inertia(:, :, s), wrench(:, s), amount(:, s), inertia(:, :, parent(s)), &
-                         wrench(:, parent(s)), amount(:, parent(s)))
-    end do
+    end subroutine eliminate
   end subroutine go_inward
 
   !> An upper bound of the inertia about a screw of all links that it moves, as if rigid: the measure of round-off in a pivot.
@@ -256,103 +285,106 @@ contains
 
   !> Add the inertia and wrench of a frame to those of its parent, about the parent's origin:
   !> J' = J + [arm] H'^T - H [arm], H' = H + [arm] M. All vectors are in fixed axes.
-  pure subroutine add_to_parent(arm, inertia, wrench, amount, parent_inertia, parent_wrench, parent_amount)
-    real(wp), intent(in) :: arm(3)                    !< from the parent's origin to the frame's [m]
-    real(wp), intent(in) :: inertia(3, 9)             !< J, H, M of the frame
-    real(wp), intent(in) :: wrench(6)                 !< torque and force on the frame [N m, N]
-    real(wp), intent(in) :: amount(5)                 !< mass, moment and sum of m r^2 of the frame
-    real(wp), intent(inout) :: parent_inertia(3, 9)   !< J, H, M of the parent
-    real(wp), intent(inout) :: parent_wrench(6)       !< torque and force on the parent [N m, N]
-    real(wp), intent(inout) :: parent_amount(5)       !< mass, moment and sum of m r^2 of the parent
+  pure subroutine add_to_parent(arm, body, parent)
+    real(wp), intent(in) :: arm(3)                         !< from the parent's origin to the frame's [m]
+    type(articulated_body_type), intent(in) :: body        !< the frame with all links beyond it
+    type(articulated_body_type), intent(inout) :: parent   !< the parent alike; grows
     real(wp) :: h(3, 3), j(3, 3)
     integer :: i
 
     ! written out, because a call of `cross` for each column would cost as much as its arithmetic
     do i = 1, 3
-      h(1, i) = inertia(1, 3 + i) + (arm(2)*inertia(3, 6 + i) - arm(3)*inertia(2, 6 + i))
-      h(2, i) = inertia(2, 3 + i) + (arm(3)*inertia(1, 6 + i) - arm(1)*inertia(3, 6 + i))
-      h(3, i) = inertia(3, 3 + i) + (arm(1)*inertia(2, 6 + i) - arm(2)*inertia(1, 6 + i))
+      h(1, i) = body%inertia(1, 3 + i) + (arm(2)*body%inertia(3, 6 + i) - arm(3)*body%inertia(2, 6 + i))
+      h(2, i) = body%inertia(2, 3 + i) + (arm(3)*body%inertia(1, 6 + i) - arm(1)*body%inertia(3, 6 + i))
+      h(3, i) = body%inertia(3, 3 + i) + (arm(1)*body%inertia(2, 6 + i) - arm(2)*body%inertia(1, 6 + i))
     end do
     do i = 1, 3
-      j(1, i) = inertia(1, i) + (arm(2)*h(i, 3) - arm(3)*h(i, 2))
-      j(2, i) = inertia(2, i) + (arm(3)*h(i, 1) - arm(1)*h(i, 3))
-      j(3, i) = inertia(3, i) + (arm(1)*h(i, 2) - arm(2)*h(i, 1))
+      j(1, i) = body%inertia(1, i) + (arm(2)*h(i, 3) - arm(3)*h(i, 2))
+      j(2, i) = body%inertia(2, i) + (arm(3)*h(i, 1) - arm(1)*h(i, 3))
+      j(3, i) = body%inertia(3, i) + (arm(1)*h(i, 2) - arm(2)*h(i, 1))
     end do
-    j(:, 1) = j(:, 1) + arm(2)*inertia(:, 6) - arm(3)*inertia(:, 5)
-    j(:, 2) = j(:, 2) + arm(3)*inertia(:, 4) - arm(1)*inertia(:, 6)
-    j(:, 3) = j(:, 3) + arm(1)*inertia(:, 5) - arm(2)*inertia(:, 4)
-    parent_inertia(:, 1:3) = parent_inertia(:, 1:3) + j
-    parent_inertia(:, 4:6) = parent_inertia(:, 4:6) + h
-    parent_inertia(:, 7:9) = parent_inertia(:, 7:9) + inertia(:, 7:9)
-    parent_wrench(1:3) = parent_wrench(1:3) + wrench(1:3) + cross(arm, wrench(4:6))
-    parent_wrench(4:6) = parent_wrench(4:6) + wrench(4:6)
-    parent_amount(1) = parent_amount(1) + amount(1)
-    parent_amount(2:4) = parent_amount(2:4) + amount(2:4) + amount(1)*arm
-    parent_amount(5) = parent_amount(5) + amount(5) + 2.0_wp*dot_product(arm, amount(2:4)) + amount(1)*dot_product(arm, arm)
+    j(:, 1) = j(:, 1) + arm(2)*body%inertia(:, 6) - arm(3)*body%inertia(:, 5)
+    j(:, 2) = j(:, 2) + arm(3)*body%inertia(:, 4) - arm(1)*body%inertia(:, 6)
+    j(:, 3) = j(:, 3) + arm(1)*body%inertia(:, 5) - arm(2)*body%inertia(:, 4)
+    parent%inertia(:, 1:3) = parent%inertia(:, 1:3) + j
+    parent%inertia(:, 4:6) = parent%inertia(:, 4:6) + h
+    parent%inertia(:, 7:9) = parent%inertia(:, 7:9) + body%inertia(:, 7:9)
+    parent%wrench(1:3) = parent%wrench(1:3) + body%wrench(1:3) + cross(arm, body%wrench(4:6))
+    parent%wrench(4:6) = parent%wrench(4:6) + body%wrench(4:6)
+    parent%amount(1) = parent%amount(1) + body%amount(1)
+    parent%amount(2:4) = parent%amount(2:4) + body%amount(2:4) + body%amount(1)*arm
+    parent%amount(5) = parent%amount(5) + body%amount(5) + 2.0_wp*dot_product(arm, body%amount(2:4)) &
+                       + body%amount(1)*dot_product(arm, arm)
   end subroutine add_to_parent
 
   !> Find the accelerations of a run of open steps, the first step first. All vectors are in fixed axes.
-  pure subroutine go_outward(first, last, m, parent, place, p, axis_w, axis_v, column, pivot, rest, motion, accelerations)
-    integer, intent(in) :: first                !< first step of the run
-    integer, intent(in) :: last                 !< last step of the run
-    integer, intent(in) :: m                    !< number of steps of the plan
-    integer, intent(in) :: parent(m)            !< frame from which each step departs
-    integer, intent(in) :: place(m)             !< place of each step's coordinate among the independent ones
-    real(wp), intent(in) :: p(3, 0:m)           !< origin of each frame [m]
-    real(wp), intent(in) :: axis_w(3, m)        !< angular velocity that each step gives per unit rate
-    real(wp), intent(in) :: axis_v(3, m)        !< velocity of the new origin per unit rate
-    real(wp), intent(in) :: column(6, m)        !< U of each step
-    real(wp), intent(in) :: pivot(m)            !< D of each step
-    real(wp), intent(in) :: rest(m)             !< Q - S . wrench_0 of each step
-    real(wp), intent(inout) :: motion(6, 0:m)   !< gets accelerations less those that rates alone give; zero for frame 0
-    real(wp), intent(inout) :: accelerations(*)   !< (independent coordinates) gets those of the run [rad/s^2, m/s^2]
-    real(wp) :: dw(3), dv(3), x
-    integer :: s
+  pure subroutine go_outward(first, last, steps, state, work, accelerations)
+    integer, intent(in) :: first                         !< first step of the run
+    integer, intent(in) :: last                          !< last step of the run
+    type(chain_step_type), intent(in) :: steps(*)        !< (M) the steps of the plan
+    type(state_type), intent(in) :: state                !< with origins of the frames and screws of the steps
+    type(articulated_work_type), intent(inout) :: work   !< with the eliminated steps; gets the motion of the run's frames
+    real(wp), intent(inout) :: accelerations(*)          !< (independent coordinates) gets those of the run [rad/s^2, m/s^2]
 
-    do s = first, last
-      dw = motion(1:3, parent(s))
-      dv = motion(4:6, parent(s)) + cross(dw, p(:, s) - p(:, parent(s)))
-      x = (rest(s) - dot_product(column(1:3, s), dw) - dot_product(column(4:6, s), dv))/pivot(s)
-      accelerations(place(s)) = x
-      motion(1:3, s) = dw + x*axis_w(:, s)
-      motion(4:6, s) = dv + x*axis_v(:, s)
-    end do
+    call move(state%p, state%axis_w, state%axis_v, work%steps, work%motion, accelerations)
+
+  contains
+
+    !> The same from plain arrays.
+    pure subroutine move(p, axis_w, axis_v, eliminated, motion, accelerations)
+      real(wp), intent(in) :: p(3, 0:*)                           !< origin of each frame [m]
+      real(wp), intent(in) :: axis_w(3, *)                        !< angular velocity that each step gives per unit rate
+      real(wp), intent(in) :: axis_v(3, *)                        !< velocity of the new origin per unit rate
+      type(eliminated_step_type), intent(in) :: eliminated(*)     !< the steps
+      real(wp), intent(inout) :: motion(6, 0:*)                   !< less the part by rates alone; zero for frame 0
+      real(wp), intent(inout) :: accelerations(*)                 !< of the independent coordinates [rad/s^2, m/s^2]
+      real(wp) :: dw(3), dv(3), x
+      integer :: s
+
+      do s = first, last
+        associate (parent => steps(s)%parent, step => eliminated(s))
+          dw = motion(1:3, parent)
+          dv = motion(4:6, parent) + cross(dw, p(:, s) - p(:, parent))
+          x = (step%rest - dot_product(step%column(1:3), dw) - dot_product(step%column(4:6), dv))/step%pivot
+          accelerations(steps(s)%place) = x
+          motion(1:3, s) = dw + x*axis_w(:, s)
+          motion(4:6, s) = dv + x*axis_v(:, s)
+        end associate
+      end do
+    end subroutine move
   end subroutine go_outward
 
   !> Pass the inertia and the wrench of a run of driven open steps to the parents, the last step first: a step whose acceleration
   !> is given resists like a rigid joint. All vectors are in fixed axes.
-  pure subroutine pass_inward(first, last, m, parent, p, inertia, wrench, amount)
-    integer, intent(in) :: first                    !< first step of the run
-    integer, intent(in) :: last                     !< last step of the run
-    integer, intent(in) :: m                        !< number of steps of the plan
-    integer, intent(in) :: parent(m)                !< frame from which each step departs
-    real(wp), intent(in) :: p(3, 0:m)               !< origin of each frame [m]
-    real(wp), intent(inout) :: inertia(3, 9, 0:m)   !< J, H, M of each frame's own bodies; then of all links beyond it too
-    real(wp), intent(inout) :: wrench(6, 0:m)       !< torque_0 and force_0 in the same way [N m, N]
-    real(wp), intent(inout) :: amount(5, 0:m)       !< mass, moment and sum of m r^2 in the same way, as if rigid
+  pure subroutine pass_inward(first, last, steps, p, bodies)
+    integer, intent(in) :: first                                !< first step of the run
+    integer, intent(in) :: last                                 !< last step of the run
+    type(chain_step_type), intent(in) :: steps(*)               !< (M) the steps of the plan
+    real(wp), intent(in) :: p(3, 0:*)                           !< origin of each frame [m]
+    type(articulated_body_type), intent(inout) :: bodies(0:*)   !< each frame's own bodies; then with all links beyond it
     integer :: s
 
     do s = last, first, -1
-      if (parent(s) == 0) cycle
-      call add_to_parent(p(:, s) - p(:, parent(s)), inertia(:, :, s), wrench(:, s), amount(:, s), inertia(:, :, parent(s)), &
-                         wrench(:, parent(s)), amount(:, parent(s)))
+      if (steps(s)%parent == 0) cycle
+      call add_to_parent(p(:, s) - p(:, steps(s)%parent), bodies(s), bodies(steps(s)%parent))
     end do
   end subroutine pass_inward
 
   !> Move the frames of a run of driven open steps with their parents, the first step first: their own accelerations are among
   !> those that rates and drives give. All vectors are in fixed axes.
-  pure subroutine pass_outward(first, last, m, parent, p, motion)
+  pure subroutine pass_outward(first, last, steps, p, motion)
     integer, intent(in) :: first                    !< first step of the run
     integer, intent(in) :: last                     !< last step of the run
-    integer, intent(in) :: m                        !< number of steps of the plan
-    integer, intent(in) :: parent(m)                !< frame from which each step departs
-    real(wp), intent(in) :: p(3, 0:m)               !< origin of each frame [m]
-    real(wp), intent(inout) :: motion(6, 0:m)       !< gets accelerations less those that rates and drives give
+    type(chain_step_type), intent(in) :: steps(*)   !< (M) the steps of the plan
+    real(wp), intent(in) :: p(3, 0:*)               !< origin of each frame [m]
+    real(wp), intent(inout) :: motion(6, 0:*)       !< gets accelerations less those that rates and drives give
     integer :: s
 
     do s = first, last
-      motion(1:3, s) = motion(1:3, parent(s))
-      motion(4:6, s) = motion(4:6, parent(s)) + cross(motion(1:3, parent(s)), p(:, s) - p(:, parent(s)))
+      associate (parent => steps(s)%parent)
+        motion(1:3, s) = motion(1:3, parent)
+        motion(4:6, s) = motion(4:6, parent) + cross(motion(1:3, parent), p(:, s) - p(:, parent))
+      end associate
     end do
   end subroutine pass_outward
 end module mech9_articulated_bodies

@@ -6,6 +6,7 @@ module mech9_block_motion
   use mech9_dynamics_failures, only: failure_singular_block
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
+  use mech9_least_squares, only: nearly_dependent
   use mech9_block_solver, only: block_work_type
   use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type
   use mech9_jacobian, only: find_jacobian
@@ -45,9 +46,10 @@ contains
         err%failure%coordinates = block%coordinates
         return
       end if
-      call dynamics%arithmetics(dynamics%arithmetic_of(b))%kind%move_regular_block(plan, dynamics, b, conditioning, state, &
-                                                                                   work, moved)
-      if (moved) return
+      if (conditioning >= nearly_dependent) then
+        call dynamics%arithmetics(dynamics%arithmetic_of(b))%kind%move_regular_block(plan, dynamics, b, state, work, moved)
+        if (moved) return
+      end if
       call expect(state%t, work)
       call move_as_expected(plan, dynamics, b, state, work)
     end associate

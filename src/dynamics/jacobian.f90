@@ -5,7 +5,8 @@ module mech9_jacobian
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_block_solver, only: block_work_type
-  use mech9_lagrange_types, only: dynamics_plan_type, jacobian_type
+  use mech9_frame_columns, only: jacobian_type
+  use mech9_lagrange_types, only: dynamics_plan_type
   implicit none
   private
   public :: start_jacobian, find_jacobian, rates_by_independent
@@ -97,7 +98,7 @@ contains
             work%right(row + 1) = coupled_rate(plan, dynamics, c, dynamics%column(e), state, jacobian)
           else
             e = dynamics%first(plan%closures(c)%closing) + offset
-            call arithmetic%closing_column(plan, c, state, jacobian, e, dynamics%target_entry(e), &
+            call arithmetic%closing_column(plan, c, state, jacobian, [e, dynamics%target_entry(e)], &
                                            work%right(row + 1:row + rank))
           end if
           row = row + rank

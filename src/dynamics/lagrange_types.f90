@@ -1,4 +1,4 @@
-!> The data of Lagrange's equations: the plan of dynamics, Jacobians and scratch, and the abstract arithmetic, in space or in a
+!> The data of Lagrange's equations: the plan of dynamics and scratch, and the abstract arithmetic, in space or in a
 !> plane, that works on them.
 !>
 !> Columns of Jacobians are those of the motion relative to the frame on which a cluster stands (mech9_clusters). They are kept
@@ -15,13 +15,14 @@ module mech9_lagrange_types
   use mech9_state, only: state_type
   use mech9_block_solver, only: block_work_type
   use mech9_expectation, only: expectation_type
+  use mech9_frame_columns, only: frame_entries_type, jacobian_type
   use mech9_tree_stages, only: stage_type
   use mech9_articulated_bodies, only: articulated_work_type
   use mech9_cluster_bodies, only: cluster_work_type
   use mech9_planar_articulated, only: planar_work_type
   implicit none
   private
-  public :: frame_body_type, dynamics_plan_type, dynamics_slot_type, jacobian_type, lagrange_work_type, dynamics_arithmetic_type
+  public :: frame_body_type, dynamics_plan_type, dynamics_slot_type, lagrange_work_type, dynamics_arithmetic_type
 
   !> A link with mass or inertia, in its frame.
   type :: frame_body_type
@@ -52,16 +53,12 @@ module mech9_lagrange_types
     class(dynamics_arithmetic_type), allocatable :: kind   !< the arithmetic
   end type dynamics_slot_type
 
-  !> The plan of dynamics holds everything of dynamics that can be decided once.
-  type :: dynamics_plan_type
+  !> The plan of dynamics holds everything of dynamics that can be decided once, with the entries of frames.
+  type, extends(frame_entries_type) :: dynamics_plan_type
     type(frame_body_type), allocatable :: bodies(:)    !< links with mass or inertia, without link 1
     real(wp) :: gravity(3) = 0.0_wp                    !< in the axes of frame 0 [m/s^2]
     integer, allocatable :: place_of(:)                !< (M) place of a coordinate among the independent ones, or 0
     integer, allocatable :: held(:)                    !< places of driven coordinates among the independent ones
-    integer, allocatable :: first(:)                   !< (0:M+1) first entry of each frame
-    integer, allocatable :: column(:)                  !< (entries) place of the coordinate among the independent ones
-    integer, allocatable :: parent_entry(:)            !< (entries) the same column in the parent frame, 0 for none
-    integer, allocatable :: target_entry(:)            !< (entries) of closing frames: the same column in the target frame, or 0
     logical, allocatable :: carries(:)                 !< (0:M) a mass, a load or a later chain depends on the frame
     logical, allocatable :: closed(:)                  !< (0:M) the frame belongs to a closed cluster
     logical, allocatable :: carries_columns(:)         !< (0:M) both; columns of other frames are not used in an evaluation
@@ -69,9 +66,7 @@ module mech9_lagrange_types
     logical :: stops_alone = .false.                   !< all of them are compliant stops, and there is no motor
     logical, allocatable :: load_links(:)              !< (N) whether a load acts on the link or reads its motion
     integer, allocatable :: loaded(:)                  !< numbers of these links but link 1, which does not move
-    integer, allocatable :: support(:)                 !< (M) frame on which the cluster of each step stands
     integer, allocatable :: first_closed(:)            !< (blocks) first step of the block in its closed cluster, or past its last
-    integer, allocatable :: local(:)                   !< (entries) place of the coordinate among those of its cluster
     type(stage_type), allocatable :: stages(:)         !< in the order of a sweep outward
     !> Accelerations by articulated bodies. Otherwise there is one closed cluster, on link 1, and they follow from the coefficients.
     logical :: articulated = .false.
@@ -80,15 +75,6 @@ module mech9_lagrange_types
     integer, allocatable :: arithmetic_of(:)           !< (blocks) number of the arithmetic in which a block moves
     logical, allocatable :: in_space(:)                !< (0:M) the frame is not in a plane only: the sweeps use its motion in space
   end type dynamics_plan_type
-
-  !> Derivatives of a frame's angular velocity and of the velocity of its origin, in fixed axes, by the rate of an independent
-  !> coordinate. The entries are those of the dynamics plan; `b` is B = dq_k/dq_i of the coordinate k of the frame's step.
-  type :: jacobian_type
-    real(wp), allocatable :: w(:, :)    !< (3, entries) angular velocity per unit rate
-    real(wp), allocatable :: v(:, :)    !< (3, entries) velocity of the origin per unit rate
-    real(wp), allocatable :: flat(:, :) !< (3, entries) in planar arithmetic, of both: w about the normal, v in the plane
-    real(wp), allocatable :: b(:)       !< (entries) rate of the step's coordinate per unit rate
-  end type jacobian_type
 
   !> Scratch and results of one evaluation, sized once.
   type :: lagrange_work_type
@@ -138,13 +124,12 @@ module mech9_lagrange_types
 
     !> Rates, Jacobian entries and accelerations from rates of a well conditioned block, by a shorter way that an arithmetic may
     !> have. Where it has none, `moved` is false and nothing is changed.
-    subroutine block_mover(self, plan, dynamics, b, conditioning, state, work, moved)
-      import :: dynamics_arithmetic_type, plan_type, dynamics_plan_type, state_type, lagrange_work_type, wp
+    subroutine block_mover(self, plan, dynamics, b, state, work, moved)
+      import :: dynamics_arithmetic_type, plan_type, dynamics_plan_type, state_type, lagrange_work_type
       class(dynamics_arithmetic_type), intent(in) :: self   !< the arithmetic
       type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
       type(dynamics_plan_type), intent(in) :: dynamics      !< the plan of dynamics
       integer, intent(in) :: b                              !< number of the block
-      real(wp), intent(in) :: conditioning                  !< least pivot of the block's Jacobian over the largest
       type(state_type), intent(inout) :: state              !< gets the motion of the block
       type(lagrange_work_type), intent(inout) :: work       !< with the block factorized; gets the entries
       logical, intent(out) :: moved                         !< whether it was done
@@ -164,15 +149,14 @@ module mech9_lagrange_types
 
     !> Velocity of the closing frame relative to the target, as rows of the closure's equations, per unit rate of one
     !> independent coordinate, from the entries of the two frames.
-    pure subroutine column_finder(self, plan, c, state, jacobian, e, t, column)
+    pure subroutine column_finder(self, plan, c, state, jacobian, entries, column)
       import :: dynamics_arithmetic_type, plan_type, state_type, jacobian_type, wp
       class(dynamics_arithmetic_type), intent(in) :: self   !< the arithmetic
       type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
       integer, intent(in) :: c                              !< number of the closure
       type(state_type), intent(in) :: state                 !< with the poses of the frames
       type(jacobian_type), intent(in) :: jacobian           !< entries of all frames
-      integer, intent(in) :: e                              !< entry of the closing frame
-      integer, intent(in) :: t                              !< entry of the target frame, 0 where it does not move
+      integer, intent(in) :: entries(2)                     !< of the closing frame, and of the target frame or 0: it does not move
       real(wp), intent(out), contiguous :: column(:)        !< (rank) in the equations of the closure
     end subroutine column_finder
 

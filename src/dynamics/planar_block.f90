@@ -7,16 +7,17 @@
 module mech9_planar_block
   use mech9_kinds, only: wp
   use mech9_plan, only: plan_type, block_type
-  use mech9_state, only: state_type
+  use mech9_state, only: state_type, planar_motion_type
   use mech9_planar_plan, only: planar_step_type
   use mech9_planar_motion, only: planar_accelerations
   use mech9_planar_chain, only: planar_chain_type, new_planar_chain
-  use mech9_planar_formulas, only: step_column, step_velocity, step_acceleration
-  use mech9_planar_lagrange, only: carry_columns
+  use mech9_planar_formulas, only: step_column, step_velocity, step_acceleration, add_bias
+  use mech9_frame_columns, only: frame_entries_type, jacobian_type
+  use mech9_lagrange_types, only: dynamics_plan_type
   implicit none
   private
-  public :: planar_block_type, loop_part_type, list_loops, fill_columns, add_earlier, add_part, take_rates, move_frames, &
-    move_with_drives
+  public :: planar_block_type, list_loops, fill_columns, add_earlier, take_rates, move_frames, move_with_drives, &
+    find_chain_rates, move_chain_frames
 
   !> A step in a loop, or a frame of an earlier block from which the loop starts.
   type :: loop_part_type
@@ -46,26 +47,25 @@ module mech9_planar_block
 contains
 
   !> List the parts of the loops of block b. The columns of its frames and of those of earlier blocks must be known.
-  pure subroutine list_loops(plan, b, first, column, place_of, flat)
-    type(plan_type), intent(in) :: plan            !< the plan of the mechanism
-    integer, intent(in) :: b                       !< number of the block
-    integer, intent(in) :: first(0:)               !< (0:M+1) first entry of each frame
-    integer, intent(in) :: column(:)               !< (entries) place of the coordinate among the independent ones
-    integer, intent(in) :: place_of(:)             !< (M) place of a coordinate among the independent ones, or 0
-    type(planar_block_type), intent(out) :: flat   !< the loops of the block
+  pure subroutine list_loops(plan, b, entries, place_of, flat)
+    type(plan_type), intent(in) :: plan               !< the plan of the mechanism
+    integer, intent(in) :: b                          !< number of the block
+    type(frame_entries_type), intent(in) :: entries   !< of all frames
+    integer, intent(in) :: place_of(:)                !< (M) place of a coordinate among the independent ones, or 0
+    type(planar_block_type), intent(out) :: flat      !< the loops of the block
     type(loop_part_type) :: part
     integer :: c, i
 
     allocate (flat%unknowns(0), flat%independent(0), flat%earlier(0))
     associate (block => plan%blocks(b))
-      flat%first_entries = first(block%unknowns)
+      flat%first_entries = entries%first(block%unknowns)
       flat%units = plan%unit_of(block%coordinates)
       if (size(block%unknowns) == 0) return
       flat%chain = new_planar_chain(plan, block)
       flat%chain%last_moved = block%last_step
       flat%driven = any(plan%driven(plan%steps(block%first_step:block%last_step)%coordinate))
-      flat%columns = first(block%unknowns(1) + 1) - first(block%unknowns(1))
-      associate (columns => column(first(block%unknowns(1)):first(block%unknowns(1) + 1) - 1))
+      flat%columns = entries%first(block%unknowns(1) + 1) - entries%first(block%unknowns(1))
+      associate (columns => entries%column(entries%first(block%unknowns(1)):entries%first(block%unknowns(1) + 1) - 1))
         flat%given = plan%independent(columns)
         flat%given_units = plan%unit_of(flat%given)
         do c = block%first_closure, block%last_closure
@@ -85,8 +85,8 @@ contains
           associate (stems => plan%closures(c)%part%stems)
             ! a motion that both ends share has no part in the relative motion of the ends
             if (stems(1) == stems(2)) cycle
-            call list_columns(plan, stems(1), 1.0_wp, first, column, columns, part, flat%earlier)
-            call list_columns(plan, stems(2), -1.0_wp, first, column, columns, part, flat%earlier)
+            call list_columns(plan, stems(1), 1.0_wp, entries, columns, part, flat%earlier)
+            call list_columns(plan, stems(2), -1.0_wp, entries, columns, part, flat%earlier)
           end associate
         end do
       end associate
@@ -94,22 +94,21 @@ contains
   end subroutine list_loops
 
   !> Append a part for each column of a frame of an earlier block. The base of the cluster has none of its own.
-  pure subroutine list_columns(plan, frame, sign, first, column, columns, part, parts)
+  pure subroutine list_columns(plan, frame, sign, entries, columns, part, parts)
     type(plan_type), intent(in) :: plan                            !< the plan of the mechanism
     integer, intent(in) :: frame                                   !< number of the frame
     real(wp), intent(in) :: sign                                   !< +1 towards the closing frame, -1 towards the target
-    integer, intent(in) :: first(0:)                               !< (0:M+1) first entry of each frame
-    integer, intent(in) :: column(:)                               !< (entries) place of the coordinate among the independent ones
+    type(frame_entries_type), intent(in) :: entries                !< of all frames
     integer, intent(in) :: columns(:)   !< places of the independent coordinates on which the block depends
     type(loop_part_type), intent(inout) :: part                    !< with row and base of the closure; its other components change
     type(loop_part_type), allocatable, intent(inout) :: parts(:)   !< the list that grows
     integer :: e
 
     part%frame = frame
-    do e = first(frame), first(frame + 1) - 1
+    do e = entries%first(frame), entries%first(frame + 1) - 1
       part%entry = e
-      part%weight = sign*plan%unit_of(plan%independent(column(e)))
-      part%column = place_among(columns, column(e))
+      part%weight = sign*plan%unit_of(plan%independent(entries%column(e)))
+      part%column = place_among(columns, entries%column(e))
       if (part%column > 0) call append(parts, part)
     end do
   end subroutine list_columns
@@ -132,54 +131,58 @@ contains
     parts = [parts, part]
   end subroutine append
 
-  ! Arrays are passed with explicit shapes, apart from their types: the compiler then keeps their addresses in registers.
+  ! Inner procedures take arrays of which all but the last extent is known, so that the compiler keeps their addresses in registers.
 
   !> Derivatives of the closures' equations with respect to the coordinates of steps, where translations are divided by the
   !> mechanism's length: they fill the columns of a matrix, which is zero elsewhere.
-  pure subroutine fill_columns(n, parts, m, steps, f, slide, length, rows, columns, matrix)
-    integer, intent(in) :: n                         !< number of parts
-    type(loop_part_type), intent(in) :: parts(n)     !< steps of the loops
-    integer, intent(in) :: m                         !< number of steps
-    type(planar_step_type), intent(in) :: steps(m)   !< the steps of the plan
-    real(wp), intent(in) :: f(4, 0:m)                !< pose of each frame, in the plane's axes [m]
-    real(wp), intent(in) :: slide(2, m)              !< velocity of each new origin per unit rate, in the plane's axes
-    real(wp), intent(in) :: length                   !< the mechanism's size [m]
-    integer, intent(in) :: rows                      !< number of rows of the matrix
-    integer, intent(in) :: columns                   !< number of its columns
-    real(wp), intent(out) :: matrix(rows, columns)   !< rows in rad or parts of length, columns per rad or per length
-    real(wp) :: per_length
-    integer :: i, s, row
+  pure subroutine fill_columns(parts, steps, motion, length, matrix)
+    type(loop_part_type), intent(in), contiguous :: parts(:)    !< steps of the loops
+    type(planar_step_type), intent(in) :: steps(*)              !< the steps of the plan
+    type(planar_motion_type), intent(in) :: motion              !< with the poses of the frames
+    real(wp), intent(in) :: length                              !< the mechanism's size [m]
+    real(wp), intent(inout), contiguous :: matrix(:, :)         !< gets rows in rad or parts of length, per rad or per length
+    integer :: rows, columns
 
-    per_length = 1.0_wp/length
-    ! the parts of one closure, as many as columns, leave nothing else
-    if (rows > 3 .or. n < columns) matrix = 0.0_wp
-    do i = 1, n
-      s = parts(i)%frame
-      row = parts(i)%row
-      call step_column(steps(s), parts(i)%weight, f(:, s), slide(:, s), f(3:4, parts(i)%base), per_length, &
-                       matrix(row + 1:row + 3, parts(i)%column))
-    end do
+    rows = size(matrix, 1)
+    columns = size(matrix, 2)
+    call fill(motion%pose, motion%slide, matrix)
+
+  contains
+
+    !> The same from plain arrays.
+    pure subroutine fill(f, slide, matrix)
+      real(wp), intent(in) :: f(4, 0:*)                !< pose of each frame, in the plane's axes [m]
+      real(wp), intent(in) :: slide(2, *)              !< velocity of each new origin per unit rate, in the plane's axes
+      real(wp), intent(inout) :: matrix(rows, columns) !< the columns
+      real(wp) :: per_length
+      integer :: i, s, row
+
+      per_length = 1.0_wp/length
+      ! the parts of one closure, as many as columns, leave nothing else
+      if (rows > 3 .or. size(parts) < columns) matrix = 0.0_wp
+      do i = 1, size(parts)
+        s = parts(i)%frame
+        row = parts(i)%row
+        call step_column(steps(s), parts(i)%weight, f(:, s), slide(:, s), f(3:4, parts(i)%base), per_length, &
+                         matrix(row + 1:row + 3, parts(i)%column))
+      end do
+    end subroutine fill
   end subroutine fill_columns
 
   !> Add the contributions of frames of earlier blocks to the closures, from their columns.
-  pure subroutine add_earlier(n, parts, m, f, n_entries, entries, length, rows, columns, matrix)
-    integer, intent(in) :: n                           !< number of parts
-    type(loop_part_type), intent(in) :: parts(n)       !< columns of frames of earlier blocks
-    integer, intent(in) :: m                           !< number of steps
-    real(wp), intent(in) :: f(4, 0:m)                  !< pose of each frame, in the plane's axes [m]
-    integer, intent(in) :: n_entries                   !< number of entries of all frames
-    real(wp), intent(in) :: entries(3, n_entries)      !< angular velocity and velocity of the origin per unit rate, plane's axes
-    real(wp), intent(in) :: length                     !< the mechanism's size [m]
-    integer, intent(in) :: rows                        !< number of rows of the matrix
-    integer, intent(in) :: columns                     !< number of its columns
-    real(wp), intent(inout) :: matrix(rows, columns)   !< rows in rad or parts of length, columns per rad or per length
+  pure subroutine add_earlier(parts, f, columns, length, matrix)
+    type(loop_part_type), intent(in), contiguous :: parts(:)   !< columns of frames of earlier blocks
+    real(wp), intent(in) :: f(4, 0:*)                     !< (4,0:M) pose of each frame, in the plane's axes [m]
+    real(wp), intent(in) :: columns(3, *)                 !< (entries) angular velocity and velocity of the origin per unit rate
+    real(wp), intent(in) :: length                        !< the mechanism's size [m]
+    real(wp), intent(inout), contiguous :: matrix(:, :)   !< rows in rad or parts of length, columns per rad or per length
     real(wp) :: per_length
     integer :: i, row
 
     per_length = 1.0_wp/length
-    do i = 1, n
+    do i = 1, size(parts)
       row = parts(i)%row
-      call add_part(parts(i), per_length, f(3:4, parts(i)%base) - f(3:4, parts(i)%frame), entries(:, parts(i)%entry), &
+      call add_part(parts(i), per_length, f(3:4, parts(i)%base) - f(3:4, parts(i)%frame), columns(:, parts(i)%entry), &
                     matrix(row + 1:row + 3, parts(i)%column))
     end do
   end subroutine add_earlier
@@ -198,61 +201,54 @@ contains
   end subroutine add_part
 
   !> Take the entries of the unknowns' steps for one independent coordinate, and add its share to the rates of the unknowns.
-  pure subroutine take_rates(n, change, units, coordinates, first_entries, j, given, unit, n_b, m, b, dq)
-    integer, intent(in) :: n                  !< number of unknowns
-    real(wp), intent(in) :: change(n)         !< change of the closures' equations per unit of each, solved for the unknowns
-    real(wp), intent(in) :: units(n)          !< units of the unknowns [rad, m]
-    integer, intent(in) :: coordinates(n)     !< numbers of the unknowns
-    integer, intent(in) :: first_entries(n)   !< first entry of the frame of each unknown
-    integer, intent(in) :: j                  !< place of the independent coordinate among those of the block
-    integer, intent(in) :: given              !< its number
-    real(wp), intent(in) :: unit              !< its unit [rad, m]
-    integer, intent(in) :: n_b                !< number of entries of all frames
-    integer, intent(in) :: m                  !< number of coordinates
-    real(wp), intent(inout) :: b(n_b)         !< gets B, rate of the step's coordinate per unit rate of an independent one
-    real(wp), intent(inout) :: dq(m)          !< rates of all coordinates [rad/s, m/s]
-    real(wp) :: rate
+  pure subroutine take_rates(flat, j, coordinates, change, b, dq)
+    type(planar_block_type), intent(in) :: flat     !< the loops of the block
+    integer, intent(in) :: j                        !< place of the independent coordinate among those of the block
+    integer, intent(in), contiguous :: coordinates(:)   !< numbers of the unknowns
+    real(wp), intent(in), contiguous :: change(:)   !< change of the closures' equations per unit of it, solved for the unknowns
+    real(wp), intent(inout) :: b(*)                 !< (entries) gets B, rates of steps per unit rate of independent coordinates
+    real(wp), intent(inout) :: dq(*)                !< (M) rates of all coordinates [rad/s, m/s]
+    real(wp) :: rate, unit
     integer :: i, e
 
-    rate = dq(given)
-    do i = 1, n
-      e = first_entries(i) + j - 1
-      b(e) = -change(i)*units(i)/unit
+    rate = dq(flat%given(j))
+    unit = flat%given_units(j)
+    do i = 1, size(coordinates)
+      e = flat%first_entries(i) + j - 1
+      b(e) = -change(i)*flat%units(i)/unit
       if (j == 1) dq(coordinates(i)) = 0.0_wp
       dq(coordinates(i)) = dq(coordinates(i)) + b(e)*rate
     end do
   end subroutine take_rates
 
-  !> Columns and velocities of frames first .. last, and their accelerations with no accelerations of any coordinate.
-  pure subroutine move_frames(m, n_b, steps, first, last, entries, parent_entry, carries, b, dq, f, slide, columns, v, a)
-    integer, intent(in) :: m                         !< number of steps
-    integer, intent(in) :: n_b                       !< number of entries of all frames
-    type(planar_step_type), intent(in) :: steps(m)   !< the steps of the plan
-    integer, intent(in) :: first                     !< frames from this one
-    integer, intent(in) :: last                      !< to this one
-    integer, intent(in) :: entries(0:m + 1)          !< first entry of each frame
-    integer, intent(in) :: parent_entry(n_b)         !< the same column in the parent frame, 0 for none
-    logical, intent(in) :: carries(0:m)              !< frames whose columns are requested
-    real(wp), intent(in) :: b(n_b)                   !< B, rate of the step's coordinate per unit rate of an independent one
-    real(wp), intent(in) :: dq(m)                    !< rates of all coordinates [rad/s, m/s]
-    real(wp), intent(in) :: f(4, 0:m)                !< pose of each frame, in the plane's axes [m]
-    real(wp), intent(in) :: slide(2, m)              !< velocity of each new origin per unit rate, in the plane's axes
-    real(wp), intent(inout) :: columns(3, n_b)       !< angular velocity and velocity of the origin per unit rate, plane's axes
-    real(wp), intent(inout) :: v(3, 0:m)             !< velocities of the frames, in the plane's axes [rad/s, m/s]
-    real(wp), intent(inout) :: a(3, 0:m)             !< accelerations of the frames, in the plane's axes [rad/s^2, m/s^2]
-    real(wp) :: x, y, rate
-    integer :: s, p
+  !> Velocities of the frames of a block, and their accelerations with no accelerations of any coordinate.
+  pure subroutine move_frames(block, steps, dq, motion)
+    type(block_type), intent(in) :: block               !< the block
+    type(planar_step_type), intent(in) :: steps(*)      !< the steps of the plan
+    real(wp), intent(in) :: dq(*)                       !< (M) rates of all coordinates [rad/s, m/s]
+    type(planar_motion_type), intent(inout) :: motion   !< with poses; gets velocities and accelerations of these frames
 
-    do s = first, last
-      p = steps(s)%parent
-      x = f(3, s) - f(3, p)
-      y = f(4, s) - f(4, p)
-      rate = dq(steps(s)%coordinate)
-      call step_velocity(steps(s), rate, [x, y], slide(:, s), v(:, p), v(:, s))
-      call step_acceleration(steps(s), [rate, 0.0_wp], [x, y], slide(:, s), v(1, p), a(:, p), a(:, s))
-      if (carries(s)) &
-        call carry_columns(n_b, entries(s), entries(s + 1) - 1, parent_entry, steps(s), slide(:, s), x, y, b, columns)
-    end do
+    call move(motion%pose, motion%slide, motion%velocity, motion%acceleration)
+
+  contains
+
+    !> The same from plain arrays.
+    pure subroutine move(f, slide, v, a)
+      real(wp), intent(in) :: f(4, 0:*)      !< pose of each frame, in the plane's axes [m]
+      real(wp), intent(in) :: slide(2, *)    !< velocity of each new origin per unit rate, in the plane's axes
+      real(wp), intent(inout) :: v(3, 0:*)   !< velocities of the frames, in the plane's axes [rad/s, m/s]
+      real(wp), intent(inout) :: a(3, 0:*)   !< accelerations of the frames, in the plane's axes [rad/s^2, m/s^2]
+      real(wp) :: arm(2), rate
+      integer :: s, p
+
+      do s = block%first_step, block%last_step
+        p = steps(s)%parent
+        arm = f(3:4, s) - f(3:4, p)
+        rate = dq(steps(s)%coordinate)
+        call step_velocity(steps(s), rate, arm, slide(:, s), v(:, p), v(:, s))
+        call step_acceleration(steps(s), [rate, 0.0_wp], arm, slide(:, s), v(1, p), a(:, p), a(:, s))
+      end do
+    end subroutine move
   end subroutine move_frames
 
   !> Accelerations of the frames of a block with driven coordinates, with no accelerations of its unknowns.
@@ -267,4 +263,116 @@ contains
     end do
     call planar_accelerations(plan%planar, block%first_step, block%last_step, state%dq, state%ddq, state%planar)
   end subroutine move_with_drives
+
+  !> B of the three coordinates of a planar chain that determines them by itself (mech9_planar_chain), and their rates from those
+  !> of the independent coordinates. The right-hand sides stay in registers.
+  pure subroutine find_chain_rates(flat, inverse, steps, motion, jacobian, dq)
+    type(planar_block_type), intent(in) :: flat      !< the loop
+    real(wp), intent(in) :: inverse(3, 3)            !< inverse of the Jacobian
+    type(planar_step_type), intent(in) :: steps(*)   !< the steps of the plan
+    type(planar_motion_type), intent(in) :: motion   !< with the poses of the frames
+    type(jacobian_type), intent(inout) :: jacobian   !< with the columns of earlier blocks; gets B
+    real(wp), intent(inout) :: dq(*)                 !< (M) rates of all coordinates; gets those of the three [rad/s, m/s]
+
+    call find(motion%pose, motion%slide, jacobian%flat, jacobian%b, dq)
+
+  contains
+
+    !> The same from plain arrays.
+    pure subroutine find(f, slide, columns, b, dq)
+      real(wp), intent(in) :: f(4, 0:*)        !< pose of each frame, in the plane's axes [m]
+      real(wp), intent(in) :: slide(2, *)      !< velocity of each new origin per unit rate, in the plane's axes
+      real(wp), intent(in) :: columns(3, *)    !< of the frames of earlier blocks, in the plane's axes
+      real(wp), intent(inout) :: b(*)          !< gets B, rate of the coordinate per unit rate of an independent one
+      real(wp), intent(inout) :: dq(*)         !< rates of all coordinates; gets those of the three [rad/s, m/s]
+      real(wp) :: side(3), rate
+      integer :: i, j, e
+
+      do i = 1, 3
+        dq(flat%chain%coordinates(i)) = 0.0_wp
+      end do
+      do j = 1, flat%columns
+        call find_side(j, flat, steps, f, slide, columns, side)
+        rate = dq(flat%given(j))
+        side = side*(-1.0_wp/flat%given_units(j))
+        do i = 1, 3
+          e = flat%first_entries(i) + j - 1
+          b(e) = (inverse(i, 1)*side(1) + inverse(i, 2)*side(2) + inverse(i, 3)*side(3))*flat%units(i)
+          dq(flat%chain%coordinates(i)) = dq(flat%chain%coordinates(i)) + b(e)*rate
+        end do
+      end do
+    end subroutine find
+  end subroutine find_chain_rates
+
+  !> The motion of the ends of a chain's loop relative to each other for one independent coordinate, in the closure's equations.
+  pure subroutine find_side(j, flat, steps, f, slide, columns, side)
+    integer, intent(in) :: j                         !< place of the coordinate among those of the block
+    type(planar_block_type), intent(in) :: flat      !< the loop
+    type(planar_step_type), intent(in) :: steps(*)   !< the steps of the plan
+    real(wp), intent(in) :: f(4, 0:*)                !< (4,0:M) pose of each frame, in the plane's axes [m]
+    real(wp), intent(in) :: slide(2, *)              !< (2,M) velocity of each new origin per unit rate, in the plane's axes
+    real(wp), intent(in) :: columns(3, *)            !< (entries) of the frames of earlier blocks, in the plane's axes
+    real(wp), intent(out) :: side(3)                 !< rows in rad or parts of length, per rad or per length
+    real(wp) :: column(3)
+    integer :: i, s
+
+    side = 0.0_wp
+    do i = 1, size(flat%independent)
+      associate (part => flat%independent(i))
+        if (part%column /= j) cycle
+        s = part%frame
+        call step_column(steps(s), part%weight, f(:, s), slide(:, s), f(3:4, part%base), flat%chain%per_length, column)
+        side = side + column
+      end associate
+    end do
+    do i = 1, size(flat%earlier)
+      associate (part => flat%earlier(i))
+        if (part%column /= j) cycle
+        call add_part(part, flat%chain%per_length, f(3:4, part%base) - f(3:4, part%frame), columns(:, part%entry), side)
+      end associate
+    end do
+  end subroutine find_side
+
+  !> Velocities and columns of the frames of a planar chain, and the bias acceleration of its loop. One loop moves the frames.
+  pure subroutine move_chain_frames(chain, steps, dynamics, dq, motion, jacobian, bias)
+    type(planar_chain_type), intent(in) :: chain        !< the chain
+    type(planar_step_type), intent(in) :: steps(*)      !< the steps of the plan
+    type(dynamics_plan_type), intent(in) :: dynamics    !< the plan of dynamics
+    real(wp), intent(in) :: dq(*)                       !< (M) rates of all coordinates [rad/s, m/s]
+    type(planar_motion_type), intent(inout) :: motion   !< with poses; gets the velocities of these frames
+    type(jacobian_type), intent(inout) :: jacobian      !< with `b`; gets the columns of these frames
+    real(wp), intent(out) :: bias(2)                    !< bias acceleration of the loop [m/s^2]
+
+    call move(dynamics%parent_entry, motion%pose, motion%slide, jacobian%b, jacobian%flat, motion%velocity, bias)
+
+  contains
+
+    !> The same from plain arrays.
+    pure subroutine move(parent_entry, f, slide, b, columns, v, bias)
+      integer, intent(in) :: parent_entry(*)      !< (entries) the same column in the parent frame, 0 for none
+      real(wp), intent(in) :: f(4, 0:*)           !< pose of each frame, in the plane's axes [m]
+      real(wp), intent(in) :: slide(2, *)         !< velocity of each new origin per unit rate, in the plane's axes
+      real(wp), intent(in) :: b(*)                !< B, rate of the step's coordinate per unit rate of an independent one
+      real(wp), intent(inout) :: columns(3, *)    !< angular velocity and velocity of the origin per unit rate, plane's axes
+      real(wp), intent(inout) :: v(3, 0:*)        !< velocities of the frames, in the plane's axes [rad/s, m/s]
+      real(wp), intent(out) :: bias(2)            !< bias acceleration of the loop [m/s^2]
+      real(wp) :: arm(2), carried(3), rate
+      integer :: s, p, e
+
+      bias = 0.0_wp
+      do s = chain%first_step, chain%last_step
+        p = steps(s)%parent
+        rate = dq(steps(s)%coordinate)
+        arm = f(3:4, s) - f(3:4, p)
+        call step_velocity(steps(s), rate, arm, slide(:, s), v(:, p), v(:, s))
+        call add_bias(steps(s), chain%signs(s), rate, arm, slide(:, s), v(1, p), bias)
+        if (.not. dynamics%carries_columns(s)) cycle
+        do e = dynamics%first(s), dynamics%first(s + 1) - 1
+          carried = 0.0_wp
+          if (parent_entry(e) > 0) carried = columns(:, parent_entry(e))
+          call step_velocity(steps(s), b(e), arm, slide(:, s), carried, columns(:, e))
+        end do
+      end do
+    end subroutine move
+  end subroutine move_chain_frames
 end module mech9_planar_block

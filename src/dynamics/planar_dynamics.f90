@@ -2,24 +2,22 @@
 module mech9_planar_dynamics
   use mech9_kinds, only: wp
   use mech9_mechanism, only: mechanism_type
-  use mech9_least_squares, only: least_squares_type, nearly_dependent
+  use mech9_least_squares, only: least_squares_type
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type, planar_motion_type
   use mech9_planar_motion, only: to_plane, planar_accelerations
   use mech9_planar_closure, only: planar_bias_rates, planar_difference
   use mech9_planar_chain, only: chain_jacobian, chain_accelerations
-  use mech9_block_solver, only: block_work_type
-  use mech9_planar_lagrange, only: planar_body_type, planar_body, spread_columns, add_bodies => add_inertia, &
-    planar_wrench, add_force => add_link_force
+  use mech9_planar_lagrange, only: spread_columns, add_bodies => add_inertia, planar_wrench
   use mech9_planar_block, only: planar_block_type, list_loops, fill_columns, add_earlier, take_rates, move_frames, &
-    move_with_drives
-  use mech9_planar_chain_columns, only: chain_columns
-  use mech9_planar_articulated, only: new_planar_work, set_bodies, go_inward, go_outward, &
+    move_with_drives, find_chain_rates, move_chain_frames
+  use mech9_planar_articulated, only: planar_body_type, planar_body, new_planar_work, set_bodies, go_inward, go_outward, &
     pass_inward, pass_outward
   use mech9_cluster_bodies, only: find_rest, find_accelerations
   use mech9_planar_cluster, only: eliminate_cluster, move_cluster
   use mech9_tree_coefficients, only: find_reach, accelerate_in_plane, collect_in_plane
-  use mech9_lagrange_types, only: dynamics_plan_type, jacobian_type, lagrange_work_type, dynamics_arithmetic_type
+  use mech9_frame_columns, only: jacobian_type
+  use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type, dynamics_arithmetic_type
   implicit none
   private
   public :: planar_dynamics_type, begin_planar_dynamics, take_blocks
@@ -70,7 +68,7 @@ contains
       end do
     end if
     do i = 1, size(plan%blocks)
-      if (.not. unchanged(i)) call list_loops(plan, i, dynamics%first, dynamics%column, dynamics%place_of, self%blocks(i))
+      if (.not. unchanged(i)) call list_loops(plan, i, dynamics%frame_entries_type, dynamics%place_of, self%blocks(i))
     end do
   end subroutine begin_planar_dynamics
 
@@ -115,43 +113,37 @@ contains
     work%blocks(b)%count%factorizations = work%blocks(b)%count%factorizations + 1
   end subroutine factorize_block
 
-  !> Rates, entries and accelerations from rates in two passes, if the block is conditioned so well that round-off does no harm.
-  subroutine move_regular_block(self, plan, dynamics, b, conditioning, state, work, moved)
+  !> Rates, entries and accelerations from rates in two passes.
+  subroutine move_regular_block(self, plan, dynamics, b, state, work, moved)
     class(planar_dynamics_type), intent(in) :: self    !< the arithmetic
     type(plan_type), intent(in) :: plan                !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
     integer, intent(in) :: b                           !< number of the block
-    real(wp), intent(in) :: conditioning               !< least pivot of the block's Jacobian over the largest
     type(state_type), intent(inout) :: state           !< gets the motion of the block
     type(lagrange_work_type), intent(inout) :: work    !< with the block factorized; gets the entries
-    logical, intent(out) :: moved                      !< whether the block is conditioned well enough
+    logical, intent(out) :: moved                      !< true
 
-    moved = conditioning >= nearly_dependent
-    if (.not. moved) return
+    moved = .true.
     if (self%blocks(b)%chain%used .and. work%blocks(b)%equations%by_cofactors) then
-      call move_chain(plan, dynamics, self%blocks(b), work%blocks(b)%equations%inverse, state, work%jacobian)
+      call move_chain(self%blocks(b), work%blocks(b)%equations%inverse, plan, dynamics, state, work%jacobian)
     else
-      call move_in_plane(plan, dynamics, plan%blocks(b), dynamics%first_closed(b), self%blocks(b), state, work%jacobian, &
-                         work%sides, work%blocks(b))
+      call move_in_plane(self%blocks(b), plan, dynamics, b, state, work)
     end if
   end subroutine move_regular_block
 
   !> Move a well conditioned chain that determines three coordinates by itself.
-  pure subroutine move_chain(plan, dynamics, flat, inverse, state, jacobian)
-    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
-    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+  pure subroutine move_chain(flat, inverse, plan, dynamics, state, jacobian)
     type(planar_block_type), intent(in) :: flat        !< the chain
     real(wp), intent(in) :: inverse(3, 3)              !< inverse of its Jacobian
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
     type(state_type), intent(inout) :: state           !< with poses and independent rates; gets the motion of the chain
     type(jacobian_type), intent(inout) :: jacobian     !< with the entries of earlier blocks; gets those of this one
     real(wp) :: bias(2)
 
-    associate (planar => plan%planar, chain => flat%chain, motion => state%planar)
-      call chain_columns(flat, chain%first_step, chain%last_step, chain%signs, inverse, chain%per_length, plan%n_coordinates, &
-                         planar%steps, motion%pose, motion%slide, size(jacobian%b), dynamics%first, dynamics%parent_entry, &
-                         dynamics%carries_columns, jacobian%flat, jacobian%b, state%dq, motion%velocity, bias)
-      call chain_accelerations(planar, chain, inverse, bias, state%dq, state%ddq, motion)
-    end associate
+    call find_chain_rates(flat, inverse, plan%planar%steps, state%planar, jacobian, state%dq)
+    call move_chain_frames(flat%chain, plan%planar%steps, dynamics, state%dq, state%planar, jacobian, bias)
+    call chain_accelerations(plan%planar, flat%chain, inverse, bias, state%dq, state%ddq, state%planar)
   end subroutine move_chain
 
   !> Form the Jacobian of a block in planar arithmetic and factorize it.
@@ -164,49 +156,41 @@ contains
     if (flat%chain%used) then
       call chain_jacobian(plan%planar, flat%chain, motion, equations%a)
     else
-      call fill_columns(size(flat%unknowns), flat%unknowns, plan%n_coordinates, plan%planar%steps, motion%pose, &
-                        motion%slide, plan%length, equations%m, equations%n, equations%a)
+      call fill_columns(flat%unknowns, plan%planar%steps, motion, plan%length, equations%a)
     end if
     call equations%factorize()
   end subroutine factorize_in_plane
 
   !> Move a well conditioned block in planar arithmetic: each frame is moved once, then those of its closed cluster and beyond once
   !> more with the accelerations of the dependent coordinates.
-  subroutine move_in_plane(plan, dynamics, block, first_closed, flat, state, jacobian, sides, work)
+  subroutine move_in_plane(flat, plan, dynamics, b, state, work)
+    type(planar_block_type), intent(in) :: flat          !< the loops of the block
     type(plan_type), intent(in) :: plan                  !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics     !< the plan of dynamics
-    type(block_type), intent(in) :: block                !< the block
-    integer, intent(in) :: first_closed                  !< its first step in a closed cluster
-    type(planar_block_type), intent(in) :: flat          !< the loops of the block
+    integer, intent(in) :: b                             !< number of the block
     type(state_type), intent(inout) :: state             !< with poses and independent rates; gets the motion of the block
-    type(jacobian_type), intent(inout) :: jacobian       !< with the entries of earlier blocks; gets those of this one
-    real(wp), intent(inout), contiguous :: sides(:, :)   !< scratch: room for the right-hand sides of any block
-    type(block_work_type), intent(inout) :: work         !< with the block's Jacobian factorized; scratch
-    integer :: i, j, m, n, n_b
+    type(lagrange_work_type), intent(inout) :: work      !< with the block's Jacobian factorized; gets the entries of the block
+    integer :: i, j
 
-    m = plan%n_coordinates
-    n = size(block%unknowns)
-    n_b = size(jacobian%b)
-    call fill_columns(size(flat%independent), flat%independent, m, plan%planar%steps, state%planar%pose, &
-                      state%planar%slide, plan%length, size(sides, 1), flat%columns, sides)
-    if (size(flat%earlier) > 0) call add_earlier(size(flat%earlier), flat%earlier, m, state%planar%pose, n_b, jacobian%flat, &
-                                                 plan%length, size(sides, 1), flat%columns, sides)
-    if (flat%columns == 0) state%dq(block%coordinates) = 0.0_wp
-    do j = 1, flat%columns
-      call work%equations%solve(sides(:work%equations%m, j), work%change)
-      call take_rates(n, work%change, flat%units, block%coordinates, flat%first_entries, j, flat%given(j), flat%given_units(j), &
-                      n_b, m, jacobian%b, state%dq)
-    end do
-    call move_frames(m, n_b, plan%planar%steps, block%first_step, block%last_step, dynamics%first, &
-                     dynamics%parent_entry, dynamics%carries_columns, jacobian%b, state%dq, state%planar%pose, &
-                     state%planar%slide, jacobian%flat, state%planar%velocity, state%planar%acceleration)
-    if (flat%driven) call move_with_drives(plan, block, state)
-    call planar_bias_rates(plan%planar, block%first_closure, block%last_closure, state%planar, work%right)
-    call work%equations%solve(work%right, work%change)
-    do i = 1, n
-      state%ddq(block%coordinates(i)) = -work%change(i)*flat%units(i)
-    end do
-    call planar_accelerations(plan%planar, first_closed, block%last_step, state%dq, state%ddq, state%planar)
+    associate (block => plan%blocks(b), steps => plan%planar%steps, motion => state%planar, solver => work%blocks(b))
+      call fill_columns(flat%independent, steps, motion, plan%length, work%sides(:, :flat%columns))
+      if (size(flat%earlier) > 0) &
+        call add_earlier(flat%earlier, motion%pose, work%jacobian%flat, plan%length, work%sides(:, :flat%columns))
+      if (flat%columns == 0) state%dq(block%coordinates) = 0.0_wp
+      do j = 1, flat%columns
+        call solver%equations%solve(work%sides(:solver%equations%m, j), solver%change)
+        call take_rates(flat, j, block%coordinates, solver%change, work%jacobian%b, state%dq)
+      end do
+      call move_frames(block, steps, state%dq, motion)
+      call spread_columns(steps, block, dynamics%first, dynamics%parent_entry, dynamics%carries_columns, motion, work%jacobian)
+      if (flat%driven) call move_with_drives(plan, block, state)
+      call planar_bias_rates(plan%planar, block%first_closure, block%last_closure, motion, solver%right)
+      call solver%equations%solve(solver%right, solver%change)
+      do i = 1, size(block%unknowns)
+        state%ddq(block%coordinates(i)) = -solver%change(i)*flat%units(i)
+      end do
+      call planar_accelerations(plan%planar, dynamics%first_closed(b), block%last_step, state%dq, state%ddq, motion)
+    end associate
   end subroutine move_in_plane
 
   !> Outward recursion of the Jacobian's entries over the frames of a block that belong to its closed cluster.
@@ -220,32 +204,28 @@ contains
     type(jacobian_type), intent(inout) :: jacobian     !< with `b` of the block's steps
 
     if (all_frames) then
-      call spread_columns(plan%n_coordinates, size(jacobian%b), plan%planar%steps, block%first_step, block%last_step, &
-                          dynamics%first, dynamics%parent_entry, dynamics%closed, jacobian%b, state%planar%pose, &
-                          state%planar%slide, jacobian%flat)
+      call spread_columns(plan%planar%steps, block, dynamics%first, dynamics%parent_entry, dynamics%closed, state%planar, jacobian)
     else
-      call spread_columns(plan%n_coordinates, size(jacobian%b), plan%planar%steps, block%first_step, block%last_step, &
-                          dynamics%first, dynamics%parent_entry, dynamics%carries_columns, jacobian%b, state%planar%pose, &
-                          state%planar%slide, jacobian%flat)
+      call spread_columns(plan%planar%steps, block, dynamics%first, dynamics%parent_entry, dynamics%carries_columns, &
+                          state%planar, jacobian)
     end if
   end subroutine spread_jacobian
 
   !> Velocity of the closing frame relative to the target, as rows of the closure's equations, per unit rate of one
   !> independent coordinate.
-  pure subroutine closing_column(self, plan, c, state, jacobian, e, t, column)
+  pure subroutine closing_column(self, plan, c, state, jacobian, entries, column)
     class(planar_dynamics_type), intent(in) :: self   !< the arithmetic
     type(plan_type), intent(in) :: plan               !< the plan of the mechanism
     integer, intent(in) :: c                          !< number of the closure
     type(state_type), intent(in) :: state             !< with the poses of the frames
     type(jacobian_type), intent(in) :: jacobian       !< entries of all frames
-    integer, intent(in) :: e                          !< entry of the closing frame
-    integer, intent(in) :: t                          !< entry of the target frame, 0 where it does not move
+    integer, intent(in) :: entries(2)                 !< of the closing frame, and of the target frame or 0: it does not move
     real(wp), intent(out), contiguous :: column(:)    !< (3) in the equations of the closure
     real(wp) :: of_target(3)
 
     of_target = 0.0_wp
-    if (t > 0) of_target = jacobian%flat(:, t)
-    call planar_difference(plan%planar, c, state%planar, jacobian%flat(:, e), of_target, column)
+    if (entries(2) > 0) of_target = jacobian%flat(:, entries(2))
+    call planar_difference(plan%planar, c, state%planar, jacobian%flat(:, entries(1)), of_target, column)
   end subroutine closing_column
 
   !> Add the coefficients a_pr (21), the velocity terms of (19) and the weights of all bodies of one cluster on link 1.
@@ -255,9 +235,8 @@ contains
     type(state_type), intent(in) :: state              !< with the accelerations that rates alone give
     type(lagrange_work_type), intent(inout) :: work    !< with the entries of the Jacobian; gets the sums
 
-    call add_bodies(size(self%bodies), self%bodies, size(state%q), size(dynamics%column), dynamics%first, dynamics%column, &
-                    work%jacobian%flat, state%planar%pose, state%planar%velocity, state%planar%acceleration, self%gravity, &
-                    size(work%forces), work%coefficients, work%velocity_terms, work%forces)
+    call add_bodies(self%bodies, self%gravity, state%planar%pose, state%planar%velocity, state%planar%acceleration, dynamics, &
+                    work)
   end subroutine add_inertia
 
   !> Add the generalized forces (25) of the loads on one link.
@@ -268,13 +247,15 @@ contains
     type(state_type), intent(in) :: state              !< with the poses of the frames
     integer, intent(in) :: link                        !< number of the link
     type(lagrange_work_type), intent(inout) :: work    !< with the loads' forces; gets the generalized ones
-    integer :: f, first, last
+    real(wp) :: wrench(3)
+    integer :: f, e, p
 
     f = plan%frame_of(link)
-    first = dynamics%first(f)
-    last = dynamics%first(f + 1) - 1
-    call add_force(plan%planar, link, last - first + 1, dynamics%column(first:last), work%jacobian%flat(:, first:last), &
-                   state%planar%pose(:, f), work%sum%force(:, link), work%sum%torque(:, link), work%forces)
+    wrench = planar_wrench(plan%planar, link, state%planar%pose(:, f), work%sum%force(:, link), work%sum%torque(:, link))
+    do e = dynamics%first(f), dynamics%first(f + 1) - 1
+      p = dynamics%column(e)
+      work%forces(p) = work%forces(p) + dot_product(work%jacobian%flat(:, e), wrench)
+    end do
   end subroutine add_link_force
 
   !> Accelerations by articulated bodies: a sweep inward over the stages, and one outward.
@@ -285,29 +266,23 @@ contains
     type(state_type), intent(in) :: state              !< with the accelerations that rates alone give
     type(lagrange_work_type), intent(inout) :: work    !< with the loads' forces; gets the accelerations
     logical, intent(out) :: found                      !< whether all coordinates have inertia
-    integer :: i, m, n_entries
+    integer :: i
 
-    m = plan%n_coordinates
-    n_entries = size(dynamics%column)
     found = .true.
     call set_applied(plan, dynamics, state, work)
-    associate (steps => plan%planar%steps, motion => state%planar, frames => work%planar, columns => work%jacobian%flat)
-      call set_bodies(m, self%bodies, self%gravity, motion%pose, motion%velocity, motion%acceleration, frames)
+    associate (steps => plan%planar%steps, motion => state%planar, frames => work%planar, columns => work%jacobian%flat, &
+               entries => dynamics%frame_entries_type)
+      call set_bodies(self%bodies, self%gravity, motion, frames)
       do i = size(dynamics%stages), 1, -1
         associate (stage => dynamics%stages(i), cluster => work%clusters(i))
           if (stage%closed) then
             cluster%rest = 0.0_wp
-            if (work%sum%any_generalized) call find_rest(stage%steps, stage%coordinates, dynamics%first, &
-                                                         dynamics%local, work%jacobian%b, work%sum%generalized, cluster%rest)
-            call eliminate_cluster(size(stage%places), size(stage%held), stage%held, size(stage%frames), stage%frames, &
-                                   stage%base, m, n_entries, dynamics%first, dynamics%local, columns, motion%pose, &
-                                   frames%inertia, frames%wrench, frames%amount, cluster%factors, cluster%column, cluster%rest, &
-                                   cluster%rigid, found)
+            if (work%sum%any_generalized) call find_rest(stage, entries, work%jacobian%b, work%sum%generalized, cluster%rest)
+            call eliminate_cluster(stage, entries, columns, motion%pose, frames%bodies, cluster, found)
           else if (stage%driven) then
-            call pass_inward(stage%first_step, stage%last_step, m, steps, motion%pose, frames%inertia, frames%wrench, frames%amount)
+            call pass_inward(stage%first_step, stage%last_step, steps, motion%pose, frames%bodies)
           else
-            call go_inward(stage%first_step, stage%last_step, m, steps, motion%pose, motion%slide, work%sum%generalized, &
-                           frames%inertia, frames%wrench, frames%amount, frames%column, frames%pivot, frames%rest, found)
+            call go_inward(stage%first_step, stage%last_step, steps, motion, work%sum%generalized, frames, found)
           end if
         end associate
         if (.not. found) return
@@ -315,15 +290,12 @@ contains
       do i = 1, size(dynamics%stages)
         associate (stage => dynamics%stages(i), cluster => work%clusters(i))
           if (stage%closed) then
-            call find_accelerations(size(stage%places), stage%places, 3, cluster%factors, cluster%column, cluster%rest, &
-                                    frames%motion(:, stage%base), cluster%ddq, work%accelerations)
-            call move_cluster(size(stage%places), size(stage%feet), stage%feet, stage%base, m, n_entries, dynamics%first, &
-                              dynamics%local, columns, motion%pose, cluster%ddq, frames%motion)
+            call find_accelerations(stage%places, frames%motion(:, stage%base), cluster, work%accelerations)
+            call move_cluster(stage, entries, columns, motion%pose, cluster%ddq, frames%motion)
           else if (stage%driven) then
-            call pass_outward(stage%first_step, stage%last_step, m, steps, motion%pose, frames%motion)
+            call pass_outward(stage%first_step, stage%last_step, steps, motion%pose, frames%motion)
           else
-            call go_outward(stage%first_step, stage%last_step, m, steps, dynamics%place_of, motion%pose, motion%slide, &
-                            frames%column, frames%pivot, frames%rest, frames%motion, work%accelerations)
+            call go_outward(stage%first_step, stage%last_step, steps, dynamics%place_of, motion, frames, work%accelerations)
           end if
         end associate
       end do
@@ -355,33 +327,28 @@ contains
     type(lagrange_work_type), intent(inout) :: work    !< with the columns of closed clusters; gets the results
     real(wp) :: whole(size(work%forces))
     integer :: reach(2, size(work%forces))
-    integer :: i, m, n, n_entries
+    integer :: i, m
 
     m = plan%n_coordinates
-    n = size(work%forces)
-    n_entries = size(dynamics%column)
     do i = 1, m
       if (dynamics%closed(i) .or. dynamics%first(i) == dynamics%first(i + 1)) cycle
       work%jacobian%flat(1, dynamics%first(i)) = plan%planar%steps(i)%turn
       work%jacobian%flat(2:3, dynamics%first(i)) = merge(0.0_wp, state%planar%slide(:, i), plan%planar%steps(i)%turns)
     end do
-    associate (motion => state%planar, frames => work%planar, columns => work%jacobian%flat)
+    associate (motion => state%planar, frames => work%planar, columns => work%jacobian%flat, &
+               entries => dynamics%frame_entries_type)
       call set_applied(plan, dynamics, state, work)
-      call set_bodies(m, self%bodies, self%gravity, motion%pose, motion%velocity, motion%acceleration, frames)
-      call collect_in_plane([1, m], m, n_entries, dynamics%first, dynamics%column, dynamics%support, columns, motion%pose, &
-                            frames%wrench, n, whole)
+      call set_bodies(self%bodies, self%gravity, motion, frames)
+      call collect_in_plane([1, m], entries, columns, motion%pose, frames%bodies, whole)
       frames%applied = 0.0_wp
-      call set_bodies(m, self%bodies, 0.0_wp*self%gravity, motion%pose, motion%velocity, motion%acceleration, frames)
-      call collect_in_plane([1, m], m, n_entries, dynamics%first, dynamics%column, dynamics%support, columns, motion%pose, &
-                            frames%wrench, n, work%velocity_terms)
+      call set_bodies(self%bodies, 0.0_wp*self%gravity, motion, frames)
+      call collect_in_plane([1, m], entries, columns, motion%pose, frames%bodies, work%velocity_terms)
       work%forces = work%velocity_terms - whole
-      call find_reach(m, n_entries, dynamics%first, dynamics%column, dynamics%support, n, reach)
+      call find_reach(entries, reach)
       frames%motion = 0.0_wp
-      do i = 1, n
-        call accelerate_in_plane(i, reach(:, i), m, n_entries, dynamics%first, dynamics%column, dynamics%support, columns, &
-                                 motion%pose, frames%inertia, frames%motion, frames%wrench)
-        call collect_in_plane(reach(:, i), m, n_entries, dynamics%first, dynamics%column, dynamics%support, columns, motion%pose, &
-                              frames%wrench, n, whole)
+      do i = 1, size(whole)
+        call accelerate_in_plane(i, reach(:, i), entries, columns, motion%pose, frames)
+        call collect_in_plane(reach(:, i), entries, columns, motion%pose, frames%bodies, whole)
         frames%motion(:, reach(1, i):reach(2, i)) = 0.0_wp
         work%coefficients(i:, i) = whole(i:)
       end do

@@ -7,7 +7,8 @@ module mech9_plane_block_dynamics
   use mech9_planar_view, only: plane_in_space, show_velocities, show_accelerations
   use mech9_planar_block, only: list_loops
   use mech9_planar_dynamics, only: planar_dynamics_type, take_blocks
-  use mech9_lagrange_types, only: dynamics_plan_type, jacobian_type, lagrange_work_type
+  use mech9_frame_columns, only: jacobian_type
+  use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type
   implicit none
   private
   public :: plane_block_dynamics_type, begin_plane_block_dynamics
@@ -45,7 +46,7 @@ contains
     end if
     do b = 1, size(plan%blocks)
       if (dynamics%arithmetic_of(b) == 2 .and. .not. kept(b)) &
-        call list_loops(plan, b, dynamics%first, dynamics%column, dynamics%place_of, self%blocks(b))
+        call list_loops(plan, b, dynamics%frame_entries_type, dynamics%place_of, self%blocks(b))
     end do
   end subroutine begin_plane_block_dynamics
 
@@ -59,20 +60,17 @@ contains
     allocate (work%jacobian%flat(3, size(dynamics%column)), source=0.0_wp)
   end subroutine make_work
 
-  !> Rates, entries and accelerations from rates in the plane, if the block is conditioned well enough, and of its outer frames in
-  !> space.
-  subroutine move_regular_block(self, plan, dynamics, b, conditioning, state, work, moved)
+  !> Rates, entries and accelerations from rates in the plane, and of the block's outer frames in space.
+  subroutine move_regular_block(self, plan, dynamics, b, state, work, moved)
     class(plane_block_dynamics_type), intent(in) :: self   !< the arithmetic
     type(plan_type), intent(in) :: plan                    !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics       !< the plan of dynamics
     integer, intent(in) :: b                               !< number of the block
-    real(wp), intent(in) :: conditioning                   !< least pivot of the block's Jacobian over the largest
     type(state_type), intent(inout) :: state               !< gets the motion of the block
     type(lagrange_work_type), intent(inout) :: work        !< with the block factorized; gets the entries
-    logical, intent(out) :: moved                          !< whether the block is conditioned well enough
+    logical, intent(out) :: moved                          !< true
 
-    call self%planar_dynamics_type%move_regular_block(plan, dynamics, b, conditioning, state, work, moved)
-    if (.not. moved) return
+    call self%planar_dynamics_type%move_regular_block(plan, dynamics, b, state, work, moved)
     associate (block => plan%blocks(b))
       call show_velocities(plan, dynamics%in_space, block%first_step, block%last_step, state)
       call show_accelerations(plan, dynamics%in_space, block%first_step, block%last_step, state)

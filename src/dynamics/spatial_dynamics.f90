@@ -5,15 +5,16 @@ module mech9_spatial_dynamics
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
   use mech9_block_solver, only: solver_factorize => factorize_block
-  use mech9_articulated_bodies, only: articulated_type, articulated_work_type, new_articulated, new_articulated_work, &
-    add_to_frame, set_bodies, go_inward, go_outward, pass_inward, pass_outward
-  use mech9_cluster_bodies, only: cluster_work_type, find_rest, add_frames, eliminate_cluster, find_accelerations, move_cluster
+  use mech9_articulated_bodies, only: articulated_type, chain_step_type, new_articulated, new_articulated_work, &
+    add_to_rigid_body, set_bodies, go_inward, go_outward, pass_inward, pass_outward
+  use mech9_cluster_bodies, only: find_rest, add_frames, eliminate_cluster, find_accelerations, move_cluster
   use mech9_planar_view, only: plane_in_space
-  use mech9_moving_plane, only: seen_motion, gather_bodies
+  use mech9_moving_plane, only: plane_motion_type, seen_motion, gather_bodies
   use mech9_tree_stages, only: stage_type
   use mech9_tree_coefficients, only: find_reach, accelerate_in_space, collect_in_space
   use mech9_spatial_lagrange, only: spread_columns, add_body
-  use mech9_lagrange_types, only: dynamics_plan_type, jacobian_type, lagrange_work_type, dynamics_arithmetic_type
+  use mech9_frame_columns, only: jacobian_type
+  use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type, dynamics_arithmetic_type
   implicit none
   private
   public :: spatial_dynamics_type, new_spatial_dynamics
@@ -40,14 +41,18 @@ contains
     type(plan_type), intent(in) :: plan                !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
     type(spatial_dynamics_type) :: self
+    type(chain_step_type) :: steps(plan%n_coordinates)
     integer :: i
 
     if (.not. dynamics%articulated) return
-    self%articulated = new_articulated(plan%steps%parent, plan%steps%coordinate, dynamics%place_of(plan%steps%coordinate), &
-                                       abs(plan%steps%slide) > 0.0_wp .or. .not. plan%steps%is_screw)
+    steps%parent = plan%steps%parent
+    steps%coordinate = plan%steps%coordinate
+    steps%place = dynamics%place_of(plan%steps%coordinate)
+    steps%slides = abs(plan%steps%slide) > 0.0_wp .or. .not. plan%steps%is_screw
+    self%articulated = new_articulated(steps)
     do i = 1, size(dynamics%bodies)
       associate (body => dynamics%bodies(i))
-        call add_to_frame(self%articulated, body%frame, body%mass, body%centre, body%inertia)
+        call add_to_rigid_body(self%articulated%bodies(body%frame), body%mass, body%centre, body%inertia)
       end associate
     end do
   end function new_spatial_dynamics
@@ -75,12 +80,11 @@ contains
   end subroutine factorize_block
 
   !> Space has no shorter way than the general one.
-  subroutine move_regular_block(self, plan, dynamics, b, conditioning, state, work, moved)
+  subroutine move_regular_block(self, plan, dynamics, b, state, work, moved)
     class(spatial_dynamics_type), intent(in) :: self   !< the arithmetic
     type(plan_type), intent(in) :: plan                !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
     integer, intent(in) :: b                           !< number of the block
-    real(wp), intent(in) :: conditioning               !< least pivot of the block's Jacobian over the largest
     type(state_type), intent(inout) :: state           !< not changed
     type(lagrange_work_type), intent(inout) :: work    !< not changed
     logical, intent(out) :: moved                      !< false
@@ -99,30 +103,25 @@ contains
     type(jacobian_type), intent(inout) :: jacobian     !< with `b` of the block's steps
 
     if (all_frames) then
-      call spread_columns(plan%n_coordinates, size(jacobian%b), plan%steps, block%first_step, block%last_step, dynamics%first, &
-                          dynamics%parent_entry, dynamics%closed, jacobian%b, state%p, state%axis_w, state%axis_v, jacobian%w, &
-                          jacobian%v)
+      call spread_columns(plan, block, dynamics%first, dynamics%parent_entry, dynamics%closed, state, jacobian)
     else
-      call spread_columns(plan%n_coordinates, size(jacobian%b), plan%steps, block%first_step, block%last_step, dynamics%first, &
-                          dynamics%parent_entry, dynamics%carries_columns, jacobian%b, state%p, state%axis_w, state%axis_v, &
-                          jacobian%w, jacobian%v)
+      call spread_columns(plan, block, dynamics%first, dynamics%parent_entry, dynamics%carries_columns, state, jacobian)
     end if
   end subroutine spread_jacobian
 
   !> Velocity of the closing frame relative to the target, as rows of the closure's equations, per unit rate of one
   !> independent coordinate.
-  pure subroutine closing_column(self, plan, c, state, jacobian, e, t, column)
+  pure subroutine closing_column(self, plan, c, state, jacobian, entries, column)
     class(spatial_dynamics_type), intent(in) :: self   !< the arithmetic
     type(plan_type), intent(in) :: plan                !< the plan of the mechanism
     integer, intent(in) :: c                           !< number of the closure
     type(state_type), intent(in) :: state              !< with the poses of the frames
     type(jacobian_type), intent(in) :: jacobian        !< entries of all frames
-    integer, intent(in) :: e                           !< entry of the closing frame
-    integer, intent(in) :: t                           !< entry of the target frame, 0 where it does not move
+    integer, intent(in) :: entries(2)                  !< of the closing frame, and of the target frame or 0: it does not move
     real(wp), intent(out), contiguous :: column(:)     !< (rank) in the equations of the closure
     real(wp) :: w(3), v(3), arm(3)
 
-    associate (closure => plan%closures(c))
+    associate (closure => plan%closures(c), e => entries(1), t => entries(2))
       w = jacobian%w(:, e)
       v = jacobian%v(:, e)
       if (t > 0) then
@@ -188,15 +187,13 @@ contains
     type(state_type), intent(in) :: state              !< with the accelerations that rates alone give
     type(lagrange_work_type), intent(inout) :: work    !< with the loads' forces; gets the accelerations
     logical, intent(out) :: found                      !< whether all coordinates have inertia
-    integer :: i, m, n_entries
+    integer :: i
 
-    m = plan%n_coordinates
-    n_entries = size(dynamics%column)
     found = .true.
     call set_applied(plan, dynamics, state, work)
-    associate (chains => self%articulated, frames => work%articulated, jacobian => work%jacobian)
-      call set_bodies(m, dynamics%in_space, chains%mass, chains%moment, chains%inertia, dynamics%gravity, state%r, state%omega, &
-                      state%alpha, state%a, frames%applied, frames%inertia, frames%wrench, frames%amount)
+    associate (steps => self%articulated%steps, frames => work%articulated, jacobian => work%jacobian, &
+               entries => dynamics%frame_entries_type)
+      call set_bodies(self%articulated%bodies, dynamics%in_space, dynamics%gravity, state, frames)
       do i = size(dynamics%stages), 1, -1
         associate (stage => dynamics%stages(i), cluster => work%clusters(i))
           if (stage%closed) then
@@ -204,22 +201,15 @@ contains
             cluster%column = 0.0_wp
             cluster%rest = 0.0_wp
             cluster%rigid = 0.0_wp
-            if (work%sum%any_generalized) call find_rest(stage%steps, stage%coordinates, dynamics%first, dynamics%local, &
-                                                         jacobian%b, work%sum%generalized, cluster%rest)
-            if (stage%plane > 0) call gather_in_plane(plan, dynamics, stage, state, jacobian, frames, cluster)
-            call add_frames(size(stage%places), size(stage%frames), stage%frames, stage%base, m, n_entries, dynamics%first, &
-                            dynamics%local, jacobian%w, jacobian%v, state%p, frames%inertia, frames%wrench, frames%amount, &
-                            cluster%factors, cluster%column, cluster%rest, cluster%rigid)
-            call eliminate_cluster(m, size(stage%places), size(stage%held), stage%held, stage%base, &
-                                   frames%inertia(:, :, stage%base), frames%wrench(:, stage%base), cluster%factors, &
-                                   cluster%column, cluster%rest, cluster%rigid, found)
+            if (work%sum%any_generalized) call find_rest(stage, entries, jacobian%b, work%sum%generalized, cluster%rest)
+            if (stage%plane > 0) call gather_bodies(stage, entries, jacobian%flat, base_motion(plan, dynamics, stage, state), &
+                                                    state%planar, frames%bodies(stage%base), cluster)
+            call add_frames(stage, entries, jacobian%w, jacobian%v, state%p, frames%bodies, cluster)
+            call eliminate_cluster(plan%n_coordinates, stage, frames%bodies(stage%base), cluster, found)
           else if (stage%driven) then
-            call pass_inward(stage%first_step, stage%last_step, m, chains%parent, state%p, frames%inertia, frames%wrench, &
-                             frames%amount)
+            call pass_inward(stage%first_step, stage%last_step, steps, state%p, frames%bodies)
           else
-            call go_inward(stage%first_step, stage%last_step, m, chains%parent, chains%coordinate, chains%slides, state%p, &
-                           state%axis_w, state%axis_v, work%sum%generalized, frames%inertia, frames%wrench, frames%amount, &
-                           frames%column, frames%pivot, frames%rest, found)
+            call go_inward(stage%first_step, stage%last_step, steps, state, work%sum%generalized, frames, found)
           end if
         end associate
         if (.not. found) return
@@ -227,41 +217,31 @@ contains
       do i = 1, size(dynamics%stages)
         associate (stage => dynamics%stages(i), cluster => work%clusters(i))
           if (stage%closed) then
-            call find_accelerations(size(stage%places), stage%places, 6, cluster%factors, cluster%column, cluster%rest, &
-                                    frames%motion(:, stage%base), cluster%ddq, work%accelerations)
-            call move_cluster(size(stage%places), size(stage%feet), stage%feet, stage%base, m, n_entries, dynamics%first, &
-                              dynamics%local, jacobian%w, jacobian%v, state%p, cluster%ddq, frames%motion)
+            call find_accelerations(stage%places, frames%motion(:, stage%base), cluster, work%accelerations)
+            call move_cluster(stage, entries, jacobian%w, jacobian%v, state%p, cluster%ddq, frames%motion)
           else if (stage%driven) then
-            call pass_outward(stage%first_step, stage%last_step, m, chains%parent, state%p, frames%motion)
+            call pass_outward(stage%first_step, stage%last_step, steps, state%p, frames%motion)
           else
-            call go_outward(stage%first_step, stage%last_step, m, chains%parent, chains%place, state%p, state%axis_w, &
-                            state%axis_v, frames%column, frames%pivot, frames%rest, frames%motion, work%accelerations)
+            call go_outward(stage%first_step, stage%last_step, steps, state, frames, work%accelerations)
           end if
         end associate
       end do
     end associate
   end subroutine solve_tree
 
-  !> Add the bodies of a cluster that move in its plane only.
-  pure subroutine gather_in_plane(plan, dynamics, stage, state, jacobian, frames, cluster)
-    type(plan_type), intent(in) :: plan                    !< the plan of the mechanism
-    type(dynamics_plan_type), intent(in) :: dynamics       !< the plan of dynamics
-    type(stage_type), intent(in) :: stage                  !< the cluster
-    type(state_type), intent(in) :: state                  !< with the accelerations that rates alone give
-    type(jacobian_type), intent(in) :: jacobian            !< with the columns of its frames
-    type(articulated_work_type), intent(inout) :: frames   !< inertia and wrench of the cluster's base grow
-    type(cluster_work_type), intent(inout) :: cluster      !< its sums grow
+  !> The motion of the plane of a cluster.
+  pure function base_motion(plan, dynamics, stage, state) result(motion)
+    type(plan_type), intent(in) :: plan                !< the plan of the mechanism
+    type(dynamics_plan_type), intent(in) :: dynamics   !< the plan of dynamics
+    type(stage_type), intent(in) :: stage              !< the cluster
+    type(state_type), intent(in) :: state              !< with the accelerations that rates alone give
+    type(plane_motion_type) :: motion
 
-    associate (planar => plan%planar, motion => state%planar, support => plan%planar%planes(stage%plane)%base)
-      call gather_bodies(size(stage%places), size(stage%flat), stage%flat, stage%bodies, &
-                         seen_motion(plane_in_space(plan, state, stage%first_step), state%omega(:, support), &
-                                     state%alpha(:, support), state%a(:, support), dynamics%gravity), &
-                         stage%base, stage%place, plan%n_coordinates, size(dynamics%column), dynamics%first, dynamics%local, &
-                         jacobian%flat, motion%pose, planar%height, motion%velocity, motion%acceleration, &
-                         frames%inertia(:, :, stage%base), frames%wrench(:, stage%base), frames%amount(:, stage%base), &
-                         cluster%factors, cluster%column, cluster%rest, cluster%rigid)
+    associate (base => plan%planar%planes(stage%plane)%base)
+      motion = seen_motion(plane_in_space(plan, state, stage%first_step), state%omega(:, base), state%alpha(:, base), &
+                           state%a(:, base), dynamics%gravity)
     end associate
-  end subroutine gather_in_plane
+  end function base_motion
 
   !> The wrenches of the loads on the frames of their links.
   pure subroutine set_applied(plan, dynamics, state, work)
@@ -289,36 +269,29 @@ contains
     real(wp) :: whole(size(work%forces))
     integer :: reach(2, size(work%forces))
     logical :: all_frames(0:plan%n_coordinates)
-    integer :: i, m, n, n_entries
+    integer :: i, m
 
     all_frames = .true.
     m = plan%n_coordinates
-    n = size(work%forces)
-    n_entries = size(dynamics%column)
     do i = 1, m
       if (dynamics%closed(i) .or. dynamics%first(i) == dynamics%first(i + 1)) cycle
       work%jacobian%w(:, dynamics%first(i)) = state%axis_w(:, i)
       work%jacobian%v(:, dynamics%first(i)) = state%axis_v(:, i)
     end do
-    associate (chains => self%articulated, frames => work%articulated, jacobian => work%jacobian)
+    associate (own => self%articulated%bodies, frames => work%articulated, w => work%jacobian%w, v => work%jacobian%v, &
+               entries => dynamics%frame_entries_type)
       call set_applied(plan, dynamics, state, work)
-      call set_bodies(m, all_frames, chains%mass, chains%moment, chains%inertia, dynamics%gravity, state%r, state%omega, &
-                      state%alpha, state%a, frames%applied, frames%inertia, frames%wrench, frames%amount)
-      call collect_in_space([1, m], m, n_entries, dynamics%first, dynamics%column, dynamics%support, jacobian%w, jacobian%v, &
-                            state%p, frames%wrench, n, whole)
+      call set_bodies(own, all_frames, dynamics%gravity, state, frames)
+      call collect_in_space([1, m], entries, w, v, state%p, frames%bodies, whole)
       frames%applied = 0.0_wp
-      call set_bodies(m, all_frames, chains%mass, chains%moment, chains%inertia, 0.0_wp*dynamics%gravity, state%r, state%omega, &
-                      state%alpha, state%a, frames%applied, frames%inertia, frames%wrench, frames%amount)
-      call collect_in_space([1, m], m, n_entries, dynamics%first, dynamics%column, dynamics%support, jacobian%w, jacobian%v, &
-                            state%p, frames%wrench, n, work%velocity_terms)
+      call set_bodies(own, all_frames, 0.0_wp*dynamics%gravity, state, frames)
+      call collect_in_space([1, m], entries, w, v, state%p, frames%bodies, work%velocity_terms)
       work%forces = work%velocity_terms - whole
-      call find_reach(m, n_entries, dynamics%first, dynamics%column, dynamics%support, n, reach)
+      call find_reach(entries, reach)
       frames%motion = 0.0_wp
-      do i = 1, n
-        call accelerate_in_space(i, reach(:, i), m, n_entries, dynamics%first, dynamics%column, dynamics%support, jacobian%w, &
-                                 jacobian%v, state%p, frames%inertia, frames%motion, frames%wrench)
-        call collect_in_space(reach(:, i), m, n_entries, dynamics%first, dynamics%column, dynamics%support, jacobian%w, &
-                              jacobian%v, state%p, frames%wrench, n, whole)
+      do i = 1, size(whole)
+        call accelerate_in_space(i, reach(:, i), entries, w, v, state%p, frames)
+        call collect_in_space(reach(:, i), entries, w, v, state%p, frames%bodies, whole)
         frames%motion(:, reach(1, i):reach(2, i)) = 0.0_wp
         work%coefficients(i:, i) = whole(i:)
       end do

@@ -2,8 +2,9 @@
 module mech9_spatial_lagrange
   use mech9_kinds, only: wp
   use mech9_rotation, only: turn, turn_back, cross
-  use mech9_plan, only: step_type
+  use mech9_plan, only: plan_type, block_type, step_type
   use mech9_state, only: state_type
+  use mech9_frame_columns, only: jacobian_type
   use mech9_lagrange_types, only: frame_body_type, dynamics_plan_type, lagrange_work_type
   implicit none
   private
@@ -11,41 +12,49 @@ module mech9_spatial_lagrange
 
 contains
 
-  !> Outward recursion of the columns of those of the frames first .. last that are marked. Vectors are in fixed axes.
-  pure subroutine spread_columns(m, n, steps, first, last, entries, parent_entry, marked, b, p, axis_w, axis_v, w, v)
-    integer, intent(in) :: m                    !< number of steps
-    integer, intent(in) :: n                    !< number of entries
-    type(step_type), intent(in) :: steps(m)     !< the steps of the plan
-    integer, intent(in) :: first                !< frames from this one
-    integer, intent(in) :: last                 !< to this one
-    integer, intent(in) :: entries(0:m + 1)     !< first entry of each frame
-    integer, intent(in) :: parent_entry(n)      !< the same column in the parent frame, 0 for none
-    logical, intent(in) :: marked(0:m)          !< the columns of the frame are found
-    real(wp), intent(in) :: b(n)                !< B, rate of the step's coordinate per unit rate of an independent one
-    real(wp), intent(in) :: p(3, 0:m)           !< origin of each frame [m]
-    real(wp), intent(in) :: axis_w(3, m)        !< angular velocity that each step gives per unit rate
-    real(wp), intent(in) :: axis_v(3, m)        !< velocity of the new origin per unit rate
-    real(wp), intent(inout) :: w(3, n)          !< gets the angular velocities per unit rate of an independent coordinate
-    real(wp), intent(inout) :: v(3, n)          !< gets the velocities of the origins per unit rate of an independent coordinate
-    real(wp) :: x, y, z
-    integer :: s, e, k
+  !> Outward recursion of the columns of those frames of a block that are marked. Vectors are in fixed axes.
+  pure subroutine spread_columns(plan, block, first, parent_entry, marked, state, jacobian)
+    type(plan_type), intent(in) :: plan              !< the plan of the mechanism
+    type(block_type), intent(in) :: block            !< the block
+    integer, intent(in) :: first(0:*)                !< (0:M+1) first entry of each frame
+    integer, intent(in) :: parent_entry(*)           !< (entries) the same column in the parent frame, 0 for none
+    logical, intent(in) :: marked(0:*)               !< (0:M) the columns of the frame are found
+    type(state_type), intent(in) :: state            !< with origins of the frames and screws of the steps
+    type(jacobian_type), intent(inout) :: jacobian   !< with `b`; gets the columns of these frames
 
-    do s = first, last
-      if (.not. marked(s)) cycle
-      x = p(1, s) - p(1, steps(s)%parent)
-      y = p(2, s) - p(2, steps(s)%parent)
-      z = p(3, s) - p(3, steps(s)%parent)
-      do e = entries(s), entries(s + 1) - 1
-        w(:, e) = b(e)*axis_w(:, s)
-        v(:, e) = b(e)*axis_v(:, s)
-        k = parent_entry(e)
-        if (k == 0) cycle
-        w(:, e) = w(:, e) + w(:, k)
-        v(1, e) = v(1, e) + v(1, k) + w(2, k)*z - w(3, k)*y
-        v(2, e) = v(2, e) + v(2, k) + w(3, k)*x - w(1, k)*z
-        v(3, e) = v(3, e) + v(3, k) + w(1, k)*y - w(2, k)*x
+    call spread(plan%steps, state%p, state%axis_w, state%axis_v, jacobian%b, jacobian%w, jacobian%v)
+
+  contains
+
+    !> The same from plain arrays.
+    pure subroutine spread(steps, p, axis_w, axis_v, b, w, v)
+      type(step_type), intent(in) :: steps(*)   !< the steps of the plan
+      real(wp), intent(in) :: p(3, 0:*)         !< origin of each frame [m]
+      real(wp), intent(in) :: axis_w(3, *)      !< angular velocity that each step gives per unit rate
+      real(wp), intent(in) :: axis_v(3, *)      !< velocity of the new origin per unit rate
+      real(wp), intent(in) :: b(*)              !< B, rate of the step's coordinate per unit rate of an independent one
+      real(wp), intent(inout) :: w(3, *)        !< gets the angular velocities per unit rate of an independent coordinate
+      real(wp), intent(inout) :: v(3, *)        !< gets the velocities of the origins per unit rate of an independent coordinate
+      real(wp) :: x, y, z
+      integer :: s, e, k
+
+      do s = block%first_step, block%last_step
+        if (.not. marked(s)) cycle
+        x = p(1, s) - p(1, steps(s)%parent)
+        y = p(2, s) - p(2, steps(s)%parent)
+        z = p(3, s) - p(3, steps(s)%parent)
+        do e = first(s), first(s + 1) - 1
+          w(:, e) = b(e)*axis_w(:, s)
+          v(:, e) = b(e)*axis_v(:, s)
+          k = parent_entry(e)
+          if (k == 0) cycle
+          w(:, e) = w(:, e) + w(:, k)
+          v(1, e) = v(1, e) + v(1, k) + w(2, k)*z - w(3, k)*y
+          v(2, e) = v(2, e) + v(2, k) + w(3, k)*x - w(1, k)*z
+          v(3, e) = v(3, e) + v(3, k) + w(1, k)*y - w(2, k)*x
+        end do
       end do
-    end do
+    end subroutine spread
   end subroutine spread_columns
 
   !> Add the coefficients, velocity terms and weight of one body.

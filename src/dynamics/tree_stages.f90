@@ -4,12 +4,20 @@
 !> A stage stands on frames of earlier stages only. A sweep inward goes through the stages from the last to the first, a sweep
 !> outward from the first to the last.
 module mech9_tree_stages
+  use mech9_kinds, only: wp
   use mech9_plan, only: plan_type
   use mech9_clusters, only: clusters_type
-  use mech9_moving_plane, only: plane_body_type
+  use mech9_articulated_bodies, only: rigid_body_type
   implicit none
   private
-  public :: stage_type, find_stages, find_plane
+  public :: stage_type, plane_body_type, find_stages, find_plane
+
+  !> Bodies that move with one frame of a cluster in a plane, in its planar frame.
+  type :: plane_body_type
+    integer :: frame = 0                !< number of the frame
+    real(wp) :: height = 0.0_wp         !< of its origin above that of the plane [m]
+    type(rigid_body_type) :: together   !< the bodies
+  end type plane_body_type
 
   !> A run of open steps with successive numbers, each a cluster by itself, or one closed cluster.
   type :: stage_type
@@ -26,9 +34,9 @@ module mech9_tree_stages
     integer, allocatable :: feet(:)     !< those on which other stages stand
     integer :: plane = 0                !< the plane in which all links of the cluster move; 0 for none
     integer :: place = 0                !< the number of its base in the plane, 0 for the base of the plane
+    real(wp) :: height = 0.0_wp         !< of the base's origin above that of the plane [m]
     !> Frames of a cluster in a plane with nothing but bodies. These are not among `frames`.
-    integer, allocatable :: flat(:)
-    type(plane_body_type), allocatable :: bodies(:)   !< the bodies of these frames
+    type(plane_body_type), allocatable :: flat(:)
   end type stage_type
 
 contains
@@ -128,12 +136,16 @@ contains
       if (stage%base /= planar%planes(plane)%base .and. planar%plane_of(stage%base) /= plane) return
       stage%plane = plane
       stage%place = merge(0, stage%base, stage%base == planar%planes(plane)%base)
+      stage%height = planar%height(stage%place)
     end associate
     associate (outer => [(loaded(stage%frames(i)) .or. any(stage%feet == stage%frames(i)), i=1, size(stage%frames))])
-      stage%flat = pack(stage%frames, .not. outer)
+      allocate (stage%flat(count(.not. outer)))
+      stage%flat%frame = pack(stage%frames, .not. outer)
       stage%frames = pack(stage%frames, outer)
     end associate
-    allocate (stage%bodies(size(stage%flat)))
+    do i = 1, size(stage%flat)
+      stage%flat(i)%height = plan%planar%height(stage%flat(i)%frame)
+    end do
   end subroutine find_plane
 
   !> Numbers in ascending order.

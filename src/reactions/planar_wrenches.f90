@@ -12,7 +12,7 @@ module mech9_planar_wrenches
   use mech9_state, only: state_type
   use mech9_planar_motion, only: to_space, to_plane
   use mech9_planar_formulas, only: turn_in_plane, point_acceleration
-  use mech9_planar_lagrange, only: planar_body_type
+  use mech9_planar_articulated, only: planar_body_type
   use mech9_block_solver, only: block_work_type, new_block_work, factorize_block
   use mech9_motion_view, only: motion_view_type
   use mech9_force_sum, only: force_sum_type

@@ -12,7 +12,7 @@ module mech9_reaction_plan
   use mech9_pair, only: pair_type, screw_factors_type
   use mech9_mechanism, only: mechanism_type
   use mech9_planar_motion, only: to_plane
-  use mech9_planar_lagrange, only: planar_body_type, planar_body
+  use mech9_planar_articulated, only: planar_body_type, planar_body
   use mech9_clusters, only: clusters_type, find_clusters
   use mech9_plan, only: plan_type
   implicit none

@@ -8,7 +8,7 @@ module mech9_dynamics_plan
   use mech9_plan, only: plan_type
   use mech9_clusters, only: clusters_type, find_clusters
   use mech9_tree_stages, only: stage_type, find_stages, find_plane
-  use mech9_moving_plane, only: add_to_plane
+  use mech9_articulated_bodies, only: add_to_rigid_body
   use mech9_lagrange_types, only: dynamics_plan_type, frame_body_type
   use mech9_spatial_dynamics, only: new_spatial_dynamics
   use mech9_frame_entries, only: find_columns, find_local
@@ -216,8 +216,9 @@ contains
 
     associate (to_planar => plan%planar%to_planar(:, :, body%frame))
       do i = 1, size(stage%flat)
-        if (stage%flat(i) == body%frame) call add_to_plane(stage%bodies(i), body%mass, turn(to_planar, body%centre), &
-                                                           inertia_in_axes(to_planar, body%inertia))
+        if (stage%flat(i)%frame == body%frame) call add_to_rigid_body(stage%flat(i)%together, body%mass, &
+                                                                      turn(to_planar, body%centre), &
+                                                                      inertia_in_axes(to_planar, body%inertia))
       end do
     end associate
   end subroutine add_body

@@ -8,7 +8,7 @@ module mech9_planar_gradient
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planar_motion, only: to_plane
-  use mech9_planar_lagrange, only: planar_body_type, planar_body
+  use mech9_planar_articulated, only: planar_body_type, planar_body
   use mech9_frame_variation, only: third_derivatives_type
   use mech9_twists, only: frame_twists_type
   use mech9_parameter_support, only: varied_constant_type
