@@ -6,6 +6,7 @@ module mech9_html_film
   use mech9_text, only: string_type, to_text
   use mech9_part_names, only: part_names_type, name_column
   use mech9_rotation, only: quaternion
+  use mech9_mechanism, only: mechanism_type
   use mech9_film, only: film_type
   use mech9_film_clock, only: clock_decimals
   use mech9_projection, only: projection_type
@@ -28,14 +29,12 @@ module mech9_html_film
 contains
 
   !> Write the page to a file. Errors are exit_file.
-  subroutine save_html_film(path, title, scene, film, names, projection, planar, plot, err)
+  subroutine save_html_film(path, mechanism, scene, film, projection, plot, err)
     character(len=*), intent(in) :: path  !< name of the file
-    character(len=*), intent(in) :: title !< title of the mechanism, any text
+    type(mechanism_type), intent(in) :: mechanism   !< its title and names
     type(scene_type), intent(in) :: scene !< nodes and items of the picture
     type(film_type), intent(in) :: film   !< poses and values at the outputs of the run
-    type(part_names_type), intent(in) :: names   !< of links and pairs
     type(projection_type), intent(in) :: projection !< from space to the page
-    logical, intent(in) :: planar         !< the mechanism is seen along the normal of its plane, so that dragging moves it at first
     character(len=*), intent(in) :: plot  !< columns that are plotted at first, as for --plot; empty: some coordinates
     type(error_type), allocatable, intent(out) :: err !< allocated if it failed
     type(page_type) :: page
@@ -45,13 +44,13 @@ contains
     call page%line('<meta http-equiv="Content-Security-Policy" content="default-src ''none''; img-src data:; '// &
                    'style-src ''unsafe-inline''; script-src ''unsafe-inline''"/>')
     call page%line('<meta name="viewport" content="width=device-width, initial-scale=1"/>')
-    call page%line('<title>'//xml_text(title)//'</title>')
+    call page%line('<title>'//xml_text(mechanism%title)//'</title>')
     call page%line('<style>')
     call put_page_style(page)
     call page%line('</style><style id="picture-style">')
     call put_picture_style(page)
-    call page%line('</style></head><body><main><section aria-label="film"><h1>'//xml_text(title)//'</h1><figure>')
-    call put_picture(title, scene, film, projection, 1, .true., page)
+    call page%line('</style></head><body><main><section aria-label="film"><h1>'//xml_text(mechanism%title)//'</h1><figure>')
+    call put_picture(mechanism%title, scene, film, projection, 1, .true., page)
     call page%line('</figure>')
     call put_controls(page)
     call page%line('</section><div id="beside"><details id="curves"><summary>Plot</summary>')
@@ -63,19 +62,18 @@ contains
     call page%line('<input id="filter" type="search" placeholder="names, or parts of them: q1 P." aria-label="Names of columns"/>')
     call page%line('<dl id="list"></dl><p id="more"></p></details></div></main>')
     call page%line('<script>')
-    call put_film(scene, film, names, projection, planar, plot, page)
+    call put_film(scene, film, mechanism%names, projection, plot, page)
     call put_script(page)
     call page%line('</script></body></html>')
     call page%save(path, err)
   end subroutine save_html_film
 
   !> Append the data for the script as one constant.
-  subroutine put_film(scene, film, names, projection, planar, plot, page)
+  subroutine put_film(scene, film, names, projection, plot, page)
     type(scene_type), intent(in) :: scene            !< nodes and items of the picture
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
     type(part_names_type), intent(in) :: names       !< of links and pairs
     type(projection_type), intent(in) :: projection  !< from space to the page
-    logical, intent(in) :: planar                    !< the mechanism is planar and seen along the normal of its plane
     character(len=*), intent(in) :: plot             !< columns that are plotted at first, as for --plot; empty: some coordinates
     type(page_type), intent(inout) :: page           !< text to which the page is appended
     integer :: numbers(size(film%p, 2))              !< numbers of the links that have nodes; 0: other links, and link 1
@@ -104,7 +102,8 @@ contains
     call page%put(to_text(projection%view%toward(1), 9)//','//to_text(projection%view%toward(2), 9)//','// &
                   to_text(projection%view%toward(3), 9))
     call page%line('],')
-    call page%line('planar: '//trim(merge('true ', 'false', planar))//', decimals: '//to_text(clock_decimals(film))//',')
+    call page%line('planar: '//trim(merge('true ', 'false', projection%view%along_normal))//', decimals: '// &
+                   to_text(clock_decimals(film))//',')
     call put_nodes(scene, numbers, projection%centre, unit, page)
     call put_items(scene, page)
     call put_frames(film, numbers, count, projection%centre, unit, page)

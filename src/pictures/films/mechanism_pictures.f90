@@ -83,7 +83,7 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(skeleton_type) :: skeleton
     type(view_type) :: view
-    logical :: planar
+    logical :: along_normal
     integer :: i
 
     if (film%n_frames == 0) return
@@ -91,55 +91,59 @@ contains
     call place_slides(model%mechanism, film, skeleton)
     call find_figures(model%mechanism, film, skeleton)
     if (allocated(model%request%cams)) call find_cam_figures(model%request%cams, film, skeleton)
-    call choose_view(model%mechanism, film, skeleton, view, planar)
+    call choose_view(model%mechanism, film, skeleton, view)
     if (allocated(self%view)) then
-      ! whether the view is along the normal of the plane
-      planar = planar .and. abs(dot_product(self%view%toward, view%toward)) > 1.0_wp - 1.0e-6_wp
+      along_normal = view%along_normal .and. abs(dot_product(self%view%toward, view%toward)) > 1.0_wp - 1.0e-6_wp
       view = self%view
+      view%along_normal = along_normal
     end if
-    if (self%sketch /= '') call save_one(self, model, film, skeleton, view, planar, self%sketch, .false., err)
+    if (self%sketch /= '') call save_one(self, model, film, skeleton, view, 0, err)
     if (.not. allocated(self%animations)) return
     do i = 1, size(self%animations)
-      if (.not. allocated(err)) call save_one(self, model, film, skeleton, view, planar, self%animations(i)%text, .true., err)
+      if (.not. allocated(err)) call save_one(self, model, film, skeleton, view, i, err)
     end do
   end subroutine save_pictures
 
   !> Make one picture. The mechanism on a page can be turned unless it is planar; its projection leaves room for that.
-  subroutine save_one(self, model, film, skeleton, view, planar, path, moving, err)
+  subroutine save_one(self, model, film, skeleton, view, number, err)
     class(mechanism_pictures_type), intent(in) :: self  !< the pictures
     type(model_type), intent(in) :: model               !< the model
     type(film_type), intent(in) :: film                 !< poses and columns at some outputs
     type(skeleton_type), intent(in) :: skeleton         !< places of the pairs on their axes
     type(view_type), intent(in) :: view                 !< direction of the view
-    logical, intent(in) :: planar                       !< the motion keeps to one plane
-    character(len=*), intent(in) :: path                !< of the picture
-    logical, intent(in) :: moving                       !< the picture moves
+    integer, intent(in) :: number                       !< of the moving picture; 0: the sketch
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(projection_type) :: projection
     type(scene_type) :: scene
     type(film_type) :: shown
     type(arrow_type), allocatable :: arrows(:)
     type(pose_mark_type), allocatable :: poses(:)
-    character(len=:), allocatable :: plot
+    character(len=:), allocatable :: path, plot
     logical :: page
 
-    page = moving .and. kind_of_picture(path) == 'html'
+    if (number == 0) then
+      path = self%sketch
+    else
+      path = self%animations(number)%text
+    end if
+    page = number > 0 .and. kind_of_picture(path) == 'html'
     call find_arrows(model%mechanism, film, skeleton%size, view%toward, arrows)
-    call fit_projection(model%mechanism, film, skeleton, view, page .and. .not. planar, ends_of(arrows, film, view), projection)
+    call fit_projection(model%mechanism, film, skeleton, view, page .and. .not. view%along_normal, ends_of(arrows, film, view), &
+                        projection)
     allocate (poses(0))
     if (allocated(self%poses)) poses = self%poses
-    call make_scene(model%mechanism, film, skeleton, projection, planar, self%with_masses .or. allocated(film%forces), poses, scene)
+    call make_scene(model%mechanism, film, skeleton, projection, self%with_masses .or. allocated(film%forces), poses, scene)
     shown = film
     if (size(arrows) > 0) then
       call take_arrows(arrows, film, projection, shown)
       call add_arrows(arrows, shown, projection, scene)
     end if
-    if (.not. moving) then
+    if (number == 0) then
       call save_sketch(path, model%mechanism%title, scene, shown, projection, 1, err)
     else if (page) then
       plot = ''
       if (allocated(self%plot)) plot = self%plot
-      call save_html_film(path, model%mechanism%title, scene, shown, model%mechanism%names, projection, planar, plot, err)
+      call save_html_film(path, model%mechanism, scene, shown, projection, plot, err)
     else if (kind_of_picture(path) == 'gif') then
       call save_gif_film(path, model%mechanism%title, scene, shown, projection, err)
     else if (kind_of_picture(path) == 'mp4') then

@@ -22,13 +22,13 @@ module mech9_view_choice
 contains
 
   !> Choose the view that is taken unless the user asks for another one.
-  pure subroutine choose_view(mechanism, film, skeleton, view, planar)
+  pure subroutine choose_view(mechanism, film, skeleton, view)
     type(mechanism_type), intent(in) :: mechanism  !< the mechanism
     type(film_type), intent(in) :: film            !< poses and values at the outputs of the run
     type(skeleton_type), intent(in) :: skeleton    !< places at which the pairs are drawn
     type(view_type), intent(out) :: view           !< direction from which the mechanism is seen
-    logical, intent(out) :: planar                 !< all links move parallel to one plane
     real(wp) :: normal(3), upward(3)
+    logical :: planar
 
     upward = [0.0_wp, 0.0_wp, 1.0_wp]
     if (maxval(abs(mechanism%gravity)) > 0.0_wp) upward = -unit(mechanism%gravity)
@@ -45,6 +45,7 @@ contains
       if (normal(maxloc(abs(normal), dim=1)) < 0.0_wp) normal = -normal
       view = view_from(normal, upward)
     end if
+    view%along_normal = planar
   end subroutine choose_view
 
   !> Find whether all links move parallel to one plane. Then every pair turns about the normal of the plane or slides in

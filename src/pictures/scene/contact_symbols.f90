@@ -29,28 +29,26 @@ module mech9_contact_symbols
 contains
 
   !> Add the planes and paths of all contacts, which all other things cover.
-  subroutine add_surfaces(mechanism, film, projection, planar, scene)
+  subroutine add_surfaces(mechanism, film, projection, scene)
     type(mechanism_type), intent(in) :: mechanism    !< the mechanism
     type(film_type), intent(in) :: film              !< poses at the outputs of the run
     type(projection_type), intent(in) :: projection  !< from space to the page
-    logical, intent(in) :: planar                    !< the mechanism is planar and seen along the normal of its plane
     type(scene_type), intent(inout) :: scene         !< nodes and items of the picture
     integer :: i
 
     do i = 1, size(mechanism%contacts)
       if (mechanism%contacts(i)%surface == plane_surface) &
-        call add_plane(mechanism%contacts(i), name_of(mechanism%contacts(i)%number), film, projection, planar, scene)
+        call add_plane(mechanism%contacts(i), name_of(mechanism%contacts(i)%number), film, projection, scene)
       if (mechanism%contacts(i)%surface == profile_surface) &
         call add_guide(mechanism%contacts(i)%outline(), mechanism%contacts(i)%links(2), 1.0_wp/projection%scale, scene)
     end do
   end subroutine add_surfaces
 
   !> Add the balls of all contacts. Each is drawn once, however many contacts share it.
-  subroutine add_balls(mechanism, film, projection, planar, scene)
+  subroutine add_balls(mechanism, film, projection, scene)
     type(mechanism_type), intent(in) :: mechanism    !< the mechanism
     type(film_type), intent(in) :: film              !< poses at the outputs of the run
     type(projection_type), intent(in) :: projection  !< from space to the page
-    logical, intent(in) :: planar                    !< the mechanism is planar and seen along the normal of its plane
     type(scene_type), intent(inout) :: scene         !< nodes and items of the picture
     integer :: i, j
 
@@ -66,7 +64,7 @@ contains
       associate (contact => mechanism%contacts(i))
         if (.not. contact%radius > 0.0_wp .or. any([(same_ball(contact, mechanism%contacts(j)), j=1, i - 1)])) cycle
         call add_sphere(contact%links(1), contact%center, contact%radius, name_of(contact%number), projection, scene)
-        call add_lines(contact, film, projection, planar, scene)
+        call add_lines(contact, film, projection, scene)
       end associate
     end do
   end subroutine add_balls
@@ -113,20 +111,19 @@ contains
   end subroutine add_sphere
 
   !> Add the lines on a ball: in a plane two diameters, in space two circles around it.
-  subroutine add_lines(contact, film, projection, planar, scene)
+  subroutine add_lines(contact, film, projection, scene)
     type(contact_type), intent(in) :: contact        !< the contact
     type(film_type), intent(in) :: film              !< poses at the outputs of the run; the first one is used
     type(projection_type), intent(in) :: projection  !< from space to the page
-    logical, intent(in) :: planar                    !< the mechanism is planar and seen along the normal of its plane
     type(scene_type), intent(inout) :: scene         !< nodes and items of the picture
     real(wp) :: axes(3, 3)
     integer :: nodes(corners), i
 
     associate (link => contact%links(1), center => contact%center, radius => contact%radius)
       axes(:, 3) = turn_back(film%r(:, :, link, 1), projection%view%toward)
-      if (.not. planar) axes(:, 3) = [0.0_wp, 0.0_wp, 1.0_wp]
+      if (.not. projection%view%along_normal) axes(:, 3) = [0.0_wp, 0.0_wp, 1.0_wp]
       axes(:, :2) = across(axes(:, 3))
-      if (planar) then
+      if (projection%view%along_normal) then
         do i = 1, 2
           call scene%add_node(link, center - radius*axes(:, i), nodes(2*i - 1))
           call scene%add_node(link, center + radius*axes(:, i), nodes(2*i))
@@ -154,12 +151,11 @@ contains
   end function on_circle
 
   !> Add a plane, as far as the ball comes.
-  subroutine add_plane(contact, name, film, projection, planar, scene)
+  subroutine add_plane(contact, name, film, projection, scene)
     type(contact_type), intent(in) :: contact        !< a contact whose surface is a plane
     character(len=*), intent(in) :: name             !< of the contact
     type(film_type), intent(in) :: film              !< poses at the outputs of the run
     type(projection_type), intent(in) :: projection  !< from space to the page
-    logical, intent(in) :: planar                    !< the mechanism is planar and seen along the normal of its plane
     type(scene_type), intent(inout) :: scene         !< nodes and items of the picture
     real(wp) :: sides(3, 2), low(2), high(2), at(2), toward(3), more
     integer :: nodes(4), frame
@@ -181,7 +177,7 @@ contains
       more = contact%radius + projection%metres(plane_more)
       low = low - more
       high = high + more
-      if (planar .and. abs(dot_product(toward, normal)) < seen_from_side) then
+      if (projection%view%along_normal .and. abs(dot_product(toward, normal)) < seen_from_side) then
         call scene%add_node(link, contact%origin + low(1)*sides(:, 1), nodes(1))
         call scene%add_node(link, contact%origin + high(1)*sides(:, 1), nodes(2))
         call scene%add_item(open_path, merge(in_ground, in_bracket, link == 1), nodes(:2), link)

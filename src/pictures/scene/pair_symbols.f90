@@ -18,7 +18,6 @@ module mech9_pair_symbols
 
   !> The nodes of all pairs, and the joints that they make.
   type :: symbols_type
-    logical :: planar = .false.              !< the mechanism is planar and seen along the normal of its plane
     integer, allocatable :: node(:)          !< (M) node of each pair
     !> (2,M) nodes of the ends of the guide of a sliding pair; of a tube and its rod, nodes of their far ends.
     integer, allocatable :: guide(:, :)
@@ -36,17 +35,15 @@ module mech9_pair_symbols
 contains
 
   !> Add the nodes of all pairs to the scene, and find the joints that they make.
-  subroutine prepare_symbols(film, skeleton, projection, planar, scene, symbols)
+  subroutine prepare_symbols(film, skeleton, projection, scene, symbols)
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
     type(skeleton_type), intent(in) :: skeleton      !< places at which the pairs are drawn
     type(projection_type), intent(in) :: projection  !< from space to the page
-    logical, intent(in) :: planar                    !< the mechanism is planar and seen along the normal of its plane
     type(scene_type), intent(inout) :: scene         !< nodes and items of the picture
     type(symbols_type), intent(out) :: symbols       !< nodes and joints of the pairs
     real(wp) :: more, ends(3, 2), rim(3, 4)
     integer :: k, i, side, links(2)
 
-    symbols%planar = planar
     allocate (symbols%node(size(skeleton%places)), symbols%guide(2, size(skeleton%places)))
     allocate (symbols%plane(4, size(skeleton%places)), source=0)
     symbols%guide = 0
@@ -322,7 +319,7 @@ contains
     single = pack(pairs, skeleton%places(pairs)%drawn_by == 0)
     turns = turning_axes(film, skeleton, single)
     if (count(skeleton%places(single)%kind == turning) == 0) return
-    if (symbols%planar) then
+    if (projection%view%along_normal) then
       call scene%add_item(mark, as_ring, symbols%node(pairs(1):pairs(1)), above=above, text=names)
     else if (size(turns) >= 3 .or. any(skeleton%places(single)%ball)) then
       call scene%add_item(mark, as_ball, symbols%node(pairs(1):pairs(1)), above=above, text=names)

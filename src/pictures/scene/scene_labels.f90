@@ -39,6 +39,12 @@ module mech9_scene_labels
     real(wp), allocatable :: places(:, :)        !< (3,spots) place of a number at each spot, in the system of link 1 [m]
   end type entry_type
 
+  !> The first frame of a film on the page.
+  type :: sheet_type
+    type(projection_type) :: projection   !< from space to the page
+    type(drawing_type) :: drawing         !< places of the nodes on the page
+  end type sheet_type
+
 contains
 
   !> Add the labels to a scene that is otherwise complete.
@@ -51,69 +57,68 @@ contains
     integer, intent(in) :: shapes(:, :)     !< (2,links) number of the item that shows each link, and of a node of the link; 0: none
     type(scene_type), intent(inout) :: scene !< nodes and items of the picture
     type(obstacles_type) :: obstacles
-    type(drawing_type) :: drawing
+    type(sheet_type) :: sheet
     type(label_type), allocatable :: labels(:)
     type(entry_type), allocatable :: entries(:)
     integer :: n, i
 
-    drawing = draw_frame(scene, film, projection, 1)
-    call find_obstacles(scene, drawing, projection, obstacles)
+    sheet%projection = projection
+    sheet%drawing = draw_frame(scene, film, projection, 1)
+    call find_obstacles(scene, sheet%drawing, projection, obstacles)
     allocate (entries(size(nodes) + size(symbols%joint) + size(shapes, 2)))
     n = 0
     do i = 1, size(nodes)
       n = n + 1
-      call enter_name(mechanism%points(i)%name, nodes(i), scene, drawing, projection, entries(n))
+      call enter_name(mechanism%points(i)%name, nodes(i), scene, sheet, entries(n))
     end do
     if (size(symbols%joint) <= most_labelled) then
       do i = 1, size(symbols%joint)
         if (symbols%joint(i) /= i) cycle
         n = n + 1
-        call enter_coordinates(i, mechanism%names, film%independent, symbols, scene, drawing, projection, entries(n))
+        call enter_coordinates(i, mechanism%names, film%independent, symbols, scene, sheet, entries(n))
       end do
     end if
     if (size(shapes, 2) <= most_labelled) then
       do i = 2, size(shapes, 2)
         if (all(shapes(:, i) == 0)) cycle
         n = n + 1
-        call enter_number(i, mechanism%names, shapes(:, i), film, scene, drawing, projection, entries(n))
+        call enter_number(i, mechanism%names, shapes(:, i), film, scene, sheet, entries(n))
       end do
     end if
     labels = entries(:n)%label
     call place_labels(obstacles, [projection%width, projection%height], labels)
     do i = 1, n
       entries(i)%label = labels(i)
-      call add_entry(entries(i), mechanism%names, film, drawing, projection, scene)
+      call add_entry(entries(i), mechanism%names, film, sheet, scene)
     end do
   end subroutine add_labels
 
   !> Form the label with the name of a point.
-  subroutine enter_name(name, node, scene, drawing, projection, entry)
+  subroutine enter_name(name, node, scene, sheet, entry)
     character(len=*), intent(in) :: name             !< name of the point
     integer, intent(in) :: node                      !< number of the node of the point
     type(scene_type), intent(in) :: scene            !< nodes and items of the picture
-    type(drawing_type), intent(in) :: drawing        !< places of the nodes on the page
-    type(projection_type), intent(in) :: projection  !< from space to the page
+    type(sheet_type), intent(in) :: sheet            !< the first frame on the page
     type(entry_type), intent(out) :: entry           !< text, node and spots of the label
 
     entry%style = as_name
     entry%node = node
     entry%text = name
-    entry%label%at = drawing%xy(:, node)
+    entry%label%at = sheet%drawing%xy(:, node)
     associate (at => entry%label%at)
-      entry%label%spots = spots_around(at, clear_radius(scene, drawing, projection%symbol, at), &
+      entry%label%spots = spots_around(at, clear_radius(scene, sheet%drawing, sheet%projection%symbol, at), &
                                  [name_letter*len(name), name_height], to_left=.false.)
     end associate
   end subroutine enter_name
 
   !> Form the label with the names of the coordinates of a joint, in a row or one below the other.
-  subroutine enter_coordinates(joint, names, independent, symbols, scene, drawing, projection, entry)
+  subroutine enter_coordinates(joint, names, independent, symbols, scene, sheet, entry)
     integer, intent(in) :: joint                     !< number of the first pair of the joint
     type(part_names_type), intent(in) :: names       !< of pairs, which stand for those of coordinates
     logical, intent(in) :: independent(:)            !< (M) which coordinates are independent
     type(symbols_type), intent(in) :: symbols        !< nodes and joints of the pairs
     type(scene_type), intent(in) :: scene            !< nodes and items of the picture
-    type(drawing_type), intent(in) :: drawing        !< places of the nodes on the page
-    type(projection_type), intent(in) :: projection  !< from space to the page
+    type(sheet_type), intent(in) :: sheet            !< the first frame on the page
     type(entry_type), intent(out) :: entry           !< text, node and spots of the label
     type(spot_type), allocatable :: stacked(:)
     real(wp), parameter :: dislike = 2.0_wp
@@ -130,9 +135,9 @@ contains
     entry%n_pairs = n
     entry%style = as_coordinate
     entry%node = symbols%node(joint)
-    entry%label%at = drawing%xy(:, entry%node)
+    entry%label%at = sheet%drawing%xy(:, entry%node)
     associate (at => entry%label%at)
-      clear = clear_radius(scene, drawing, projection%symbol, at)
+      clear = clear_radius(scene, sheet%drawing, sheet%projection%symbol, at)
       entry%label%spots = spots_around(at, clear, [sum(widths(:n)) + between*(n - 1), coordinate_height], to_left=.true.)
       if (n == 1) return
       stacked = spots_around(at, clear, [maxval(widths(:n)), coordinate_height*n], to_left=.true.)
@@ -144,14 +149,13 @@ contains
 
   !> Form the label with the number of a link: on its bars or its plate, beside them, or with a leading line. The number
   !> of a link that is drawn at one place only stands beside this place.
-  subroutine enter_number(link, names, shape, film, scene, drawing, projection, entry)
+  subroutine enter_number(link, names, shape, film, scene, sheet, entry)
     integer, intent(in) :: link                      !< number of the link
     type(part_names_type), intent(in) :: names       !< of links, which stand for their numbers
     integer, intent(in) :: shape(2)                  !< number of the item that shows the link, and of a node of the link; 0: none
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
     type(scene_type), intent(in) :: scene            !< nodes and items of the picture
-    type(drawing_type), intent(in) :: drawing        !< places of the nodes on the page
-    type(projection_type), intent(in) :: projection  !< from space to the page
+    type(sheet_type), intent(in) :: sheet            !< the first frame on the page
     type(entry_type), intent(out) :: entry           !< text, node and spots of the label
     real(wp) :: size_of_box(2)
     real(wp), allocatable :: places(:, :)
@@ -164,18 +168,19 @@ contains
     entry%label%of_place = .false.
     if (shape(1) == 0) then
       entry%node = shape(2)
-      associate (at => drawing%xy(:, entry%node))
-        entry%label%spots = spots_around(at, max(9.0_wp*projection%symbol, clear_radius(scene, drawing, projection%symbol, at)), &
-                                   size_of_box, to_left=.false.)
+      associate (at => sheet%drawing%xy(:, entry%node), symbol => sheet%projection%symbol)
+        entry%label%spots = spots_around(at, max(9.0_wp*symbol, clear_radius(scene, sheet%drawing, symbol, at)), size_of_box, &
+                                         to_left=.false.)
       end associate
       return
     end if
     places = scene%places_at(film, 1)
     associate (item => scene%items(shape(1)))
       if (item%shape == closed_path) then
-        call look_in_plate(places(:, item%nodes), projection, size_of_box, entry%places, entry%label%spots)
+        call look_in_plate(places(:, item%nodes), sheet%projection, size_of_box, entry%places, entry%label%spots)
       else
-        call look_on_bars(places(:, item%nodes), item%shape == segments, projection, size_of_box, entry%places, entry%label%spots)
+        call look_on_bars(places(:, item%nodes), item%shape == segments, sheet%projection, size_of_box, entry%places, &
+                          entry%label%spots)
       end if
     end associate
   end subroutine enter_number
@@ -273,12 +278,11 @@ contains
   end function spot_at
 
   !> Add a label at its chosen spot, with its leading line.
-  subroutine add_entry(entry, names, film, drawing, projection, scene)
+  subroutine add_entry(entry, names, film, sheet, scene)
     type(entry_type), intent(in) :: entry            !< text and node of the label, with its chosen spot
     type(part_names_type), intent(in) :: names       !< of pairs, which stand for those of coordinates
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
-    type(drawing_type), intent(in) :: drawing        !< places of the nodes on the page
-    type(projection_type), intent(in) :: projection  !< from space to the page
+    type(sheet_type), intent(in) :: sheet            !< the first frame on the page
     type(scene_type), intent(inout) :: scene         !< nodes and items of the picture
     real(wp) :: at(2), depth
     integer :: node
@@ -287,45 +291,45 @@ contains
       node = entry%node
       if (node == 0) then
         call scene%add_node(entry%link, film%local(1, entry%link, entry%places(:, chosen)), node)
-        call projection%on_page(entry%places(:, chosen), at, depth)
+        call sheet%projection%on_page(entry%places(:, chosen), at, depth)
       else
-        at = drawing%xy(:, node)
+        at = sheet%drawing%xy(:, node)
       end if
       if (any(abs(spot%to - spot%from) > 0.0_wp)) &
-        call scene%add_shifted(mark, as_leader, [node], (spot%to - at)/projection%symbol)
+        call scene%add_shifted(mark, as_leader, [node], (spot%to - at)/sheet%projection%symbol)
       select case (entry%style)
       case (as_name)
         call scene%add_label(as_name, node, entry%text, [spot%low(1), spot%high(2) - below] - at)
       case (as_number)
         call scene%add_label(as_number, node, entry%text, 0.5_wp*(spot%low + spot%high) - at, entry%link)
       case default
-        call add_coordinates(entry, node, spot, chosen >= entry%first_stacked, at, names, film%independent, scene)
+        call add_coordinates(entry, at, names, film%independent, scene)
       end select
     end associate
   end subroutine add_entry
 
   !> Add the names of coordinates within their common box, each as a separate label, since only independent coordinates
   !> have a colour.
-  subroutine add_coordinates(entry, node, spot, stacked, at, names, independent, scene)
-    type(entry_type), intent(in) :: entry     !< text and node of the label
-    integer, intent(in) :: node               !< number of the node at the joint
-    type(spot_type), intent(in) :: spot       !< box and leading line of the label
-    logical, intent(in) :: stacked            !< the names stand one below the other
+  subroutine add_coordinates(entry, at, names, independent, scene)
+    type(entry_type), intent(in) :: entry     !< node of the joint, and the chosen spot
     real(wp), intent(in) :: at(2)             !< place of the joint on the page [px]
     type(part_names_type), intent(in) :: names   !< of pairs, which stand for those of coordinates
     logical, intent(in) :: independent(:)     !< (M) which coordinates are independent
     type(scene_type), intent(inout) :: scene  !< nodes and items of the picture
     real(wp) :: last(2)
+    logical :: stacked
     integer :: i, k
 
-    ! a label of this kind ends at its place
-    last = [spot%low(1), spot%high(2) - below]
-    if (stacked) last = [spot%high(1), spot%low(2) + coordinate_height - below]
+    stacked = entry%label%chosen >= entry%first_stacked
+    associate (spot => entry%label%spots(entry%label%chosen))
+      ! a label of this kind ends at its place
+      last = [spot%low(1), spot%high(2) - below]
+      if (stacked) last = [spot%high(1), spot%low(2) + coordinate_height - below]
+    end associate
     do i = 1, entry%n_pairs
       k = entry%pairs(i)
       if (.not. stacked) last(1) = last(1) + width_of(coordinate_label(names, k), independent(k))
-      call scene%add_label(merge(as_input, as_coordinate, independent(k)), node, trim(coordinate_label(names, k)), &
-                           last - at)
+      call scene%add_label(merge(as_input, as_coordinate, independent(k)), entry%node, trim(coordinate_label(names, k)), last - at)
       if (stacked) then
         last(2) = last(2) + coordinate_height
       else

@@ -34,12 +34,11 @@ module mech9_scene_making
 contains
 
   !> Make the scene of a film. It is made for one projection, since the symbols have a fixed size on the page.
-  subroutine make_scene(mechanism, film, skeleton, projection, planar, with_masses, poses, scene)
+  subroutine make_scene(mechanism, film, skeleton, projection, with_masses, poses, scene)
     type(mechanism_type), intent(in) :: mechanism    !< the mechanism
     type(film_type), intent(in) :: film              !< poses and values at the outputs of the run
     type(skeleton_type), intent(in) :: skeleton      !< places at which the pairs are drawn
     type(projection_type), intent(in) :: projection  !< from space to the page
-    logical, intent(in) :: planar                    !< the mechanism is planar and seen along the normal of its plane
     logical, intent(in) :: with_masses               !< mark the mass centres
     type(pose_mark_type), intent(in) :: poses(:)     !< poses that links should take
     type(scene_type), intent(out) :: scene           !< nodes and items of the picture
@@ -49,8 +48,8 @@ contains
     logical :: cams(size(skeleton%places))
     integer :: nodes(size(mechanism%points)), link
 
-    call prepare_symbols(film, skeleton, projection, planar, scene, symbols)
-    if (mechanism%has_contacts()) call add_surfaces(mechanism, film, projection, planar, scene)
+    call prepare_symbols(film, skeleton, projection, scene, symbols)
+    if (mechanism%has_contacts()) call add_surfaces(mechanism, film, projection, scene)
     call add_paths(mechanism, film, 1.0_wp/projection%scale, scene)
     call add_curves(film, skeleton, 1.0_wp/projection%scale, scene, cams)
     call add_guides(skeleton, projection, scene, symbols)
@@ -69,7 +68,7 @@ contains
     call add_figures(skeleton, scene, shapes)
     call add_springs(mechanism, film, skeleton, projection, shapes, scene, symbols)
     call add_stops(mechanism, film, skeleton, projection, shapes, scene, symbols)
-    if (mechanism%has_contacts()) call add_balls(mechanism, film, projection, planar, scene)
+    if (mechanism%has_contacts()) call add_balls(mechanism, film, projection, scene)
     call add_symbols(film, skeleton, projection, shapes, scene, symbols)
     scene%last_sorted = scene%n_items
     call add_points(mechanism, with_masses, nodes, scene)

@@ -59,7 +59,6 @@ contains
     type(symbols_type), intent(in) :: symbols        !< nodes and joints of the pairs
     type(plate_type) :: plate
     integer :: i, end, above(4)
-    logical :: found
 
     above = 0
     do i = 1, size(mechanism%stops)
@@ -67,8 +66,8 @@ contains
         above(:2) = shapes(place%links)
         do end = 1, 2
           if (.not. stop%has_end(end)) cycle
-          call find_plate(mechanism, film, skeleton, projection, stop%coordinate, stop%ends(end), end, plate, found)
-          if (.not. found) cycle
+          call find_plate(mechanism, film, skeleton, projection, i, end, plate)
+          if (plate%link == 0) cycle
           if (place%kind == turning) then
             call scene%add_node(plate%link, place%points(:, merge(1, 2, place%links(1) == plate%link)), plate%joint)
           else if (.not. within_guide(plate, symbols%guide(:, stop%coordinate), projection, scene)) then
@@ -82,24 +81,24 @@ contains
   end subroutine add_stops
 
   !> Find the plate of one end. There is none in joints that are drawn as a whole, in balls, and in pairs of the user's procedures.
-  subroutine find_plate(mechanism, film, skeleton, projection, k, q, end, plate, found)
+  subroutine find_plate(mechanism, film, skeleton, projection, number, end, plate)
     type(mechanism_type), intent(in) :: mechanism    !< the mechanism
     type(film_type), intent(in) :: film              !< poses of the run; the first frame is used
     type(skeleton_type), intent(in) :: skeleton      !< places at which the pairs are drawn
     type(projection_type), intent(in) :: projection  !< from space to the page
-    integer, intent(in) :: k                         !< number of the coordinate
-    real(wp), intent(in) :: q                        !< its value at the end [rad, m]
+    integer, intent(in) :: number                    !< of the stop
     integer, intent(in) :: end                       !< 1: the low one, 2: the high one
-    type(plate_type), intent(out) :: plate           !< the plate
-    logical, intent(out) :: found                    !< there is one
+    type(plate_type), intent(out) :: plate           !< the plate, with link 0 where there is none
     type(pose_type) :: pose
     real(wp) :: tangent(3), along
-    integer :: direction
+    integer :: direction, k
+    logical :: found
 
     direction = 2*end - 3
+    k = mechanism%stops(number)%coordinate
     associate (place => skeleton%places(k))
       found = place%drawn_by == 0 .and. .not. place%ball .and. (place%kind /= free .or. size(place%guide, 2) > 0)
-      if (found) call find_pose(mechanism%pairs(k)%pair, q, pose, tangent, found)
+      if (found) call find_pose(mechanism%pairs(k)%pair, mechanism%stops(number)%ends(end), pose, tangent, found)
       if (.not. found) return
       if (place%kind == turning) then
         call stand_beside(mechanism, skeleton, projection, k, pose, direction, plate)
@@ -121,7 +120,7 @@ contains
       ! the collar is outside the tube, and the piston in it
       along = dot_product(carried_to(pose, place) - place%points(:, 2), place%axes(:, 2))
       plate%half = merge(collar, piston, dot_product(place%pins(:, 2) - place%points(:, 2), plate%away) > 0.0_wp)
-      found = along_rod(along, place)
+      if (.not. along_rod(along, place)) plate%link = 0
     end associate
   end subroutine find_plate
 

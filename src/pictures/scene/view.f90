@@ -14,6 +14,7 @@ module mech9_view
     real(wp) :: right(3) = [1.0_wp, 0.0_wp, 0.0_wp]
     real(wp) :: up(3) = [0.0_wp, 1.0_wp, 0.0_wp]
     real(wp) :: toward(3) = [0.0_wp, 0.0_wp, 1.0_wp]
+    logical :: along_normal = .false.   !< the mechanism is planar and seen along the normal of its plane
   contains
     procedure :: seen
   end type view_type

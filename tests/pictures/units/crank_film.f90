@@ -49,19 +49,18 @@ contains
   end subroutine take_film
 
   !> The scene of a film as pictures show it.
-  subroutine set_scene(model, film, projection, scene, planar)
+  subroutine set_scene(model, film, projection, scene)
     type(model_type), intent(in) :: model                !< the model
     type(film_type), intent(in) :: film                  !< its frames
     type(projection_type), intent(out) :: projection     !< from space to the page
     type(scene_type), intent(out) :: scene               !< nodes and items
-    logical, intent(out) :: planar                       !< the mechanism is planar
     type(skeleton_type) :: skeleton
     type(view_type) :: view
 
     call make_skeleton(model%mechanism, film, skeleton)
     call place_slides(model%mechanism, film, skeleton)
-    call choose_view(model%mechanism, film, skeleton, view, planar)
+    call choose_view(model%mechanism, film, skeleton, view)
     call fit_projection(model%mechanism, film, skeleton, view, .false., reshape([real(wp) ::], [3, 0, 0]), projection)
-    call make_scene(model%mechanism, film, skeleton, projection, planar, .false., [pose_mark_type ::], scene)
+    call make_scene(model%mechanism, film, skeleton, projection, .false., [pose_mark_type ::], scene)
   end subroutine set_scene
 end module crank_film

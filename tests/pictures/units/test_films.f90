@@ -51,10 +51,9 @@ contains
     type(scene_type) :: scene
     type(error_type), allocatable :: err
     character(len=:), allocatable :: text
-    logical :: planar
 
     call take_film(tester, 8, model, film)
-    call set_scene(model, film, projection, scene, planar)
+    call set_scene(model, film, projection, scene)
     call save_sketch(path, title, scene, film, projection, 1, err)
     call tester%no_error(err, 'a sketch')
     call text_of_file(tester, path, text)
@@ -68,7 +67,8 @@ contains
                         'elements of a film end')
     call tester%is_true(count_of('<animate', text) > 0 .and. index(text, 'dur="8s"') > 0, 'a film moves, for 8 s')
     call tester%is_true(index(text, 'NaN') == 0 .and. index(text, '***') == 0, 'all numbers are numbers')
-    call save_html_film(path, title, scene, film, model%mechanism%names, projection, planar, '', err)
+    model%mechanism%title = title
+    call save_html_film(path, model%mechanism, scene, film, projection, '', err)
     call text_of_file(tester, path, text)
     call tester%is_true(index(text, '<!DOCTYPE html>') == 1 .and. index(text, '</html>') > 0, 'a page is whole')
     call tester%is_true(index(text, 'a <b>') == 0, 'its title has no markup')
@@ -82,10 +82,9 @@ contains
     type(projection_type) :: projection
     type(scene_type) :: scene
     type(error_type), allocatable :: err
-    logical :: planar
 
     call take_film(tester, 1, model, film)
-    call set_scene(model, film, projection, scene, planar)
+    call set_scene(model, film, projection, scene)
     call save_svg_film('there_is_no_such_folder/a.svg', title, scene, film, projection, err)
     call tester%has_error(err, exit_file, 'a folder that is not there')
   end subroutine failures

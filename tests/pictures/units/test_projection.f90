@@ -55,12 +55,11 @@ contains
     type(projection_type) :: projection
     type(scene_type) :: scene
     real(wp) :: a(2), b(2), depth
-    logical :: planar
     integer :: i
 
     call take_film(tester, 12, model, film)
-    call set_scene(model, film, projection, scene, planar)
-    call tester%is_true(planar, 'the mechanism is plane')
+    call set_scene(model, film, projection, scene)
+    call tester%is_true(projection%view%along_normal, 'the mechanism is plane')
     call near_vector(tester, projection%view%toward, [0.0_wp, 0.0_wp, 1.0_wp], 0.0_wp, 'it is seen along the normal of its plane')
     call projection%on_page(projection%centre, a, depth)
     call near_vector(tester, [a, depth], [projection%middle, 0.0_wp], tol, 'the centre is in the middle')
@@ -87,11 +86,10 @@ contains
     integer, allocatable :: order(:)
     real(wp), allocatable :: places(:, :)
     real(wp) :: xy(2), depth, far
-    logical :: planar
     integer :: i
 
     call take_film(tester, 4, model, film)
-    call set_scene(model, film, projection, scene, planar)
+    call set_scene(model, film, projection, scene)
     drawing = draw_frame(scene, film, projection, 2)
     places = scene%places_at(film, 2)
     far = 0.0_wp
