@@ -207,8 +207,8 @@ contains
     class(motor_type), intent(in) :: self                !< the motor
     type(motor_motion_type), intent(in) :: motion        !< with time and variable
     type(motor_motion_type), intent(in) :: moved         !< derivatives of the variable and of its rate
-    real(wp), intent(in) :: numbers(:)                   !< derivatives of the numbers of the law, behind those of its point,
-                                                         !< which count in `moved`; of size 0: all are zero
+    real(wp), intent(in) :: numbers(:)                   !< derivatives of the numbers of the law, those of its point first;
+                                                         !< these count in `moved`; of size 0: all are zero
     real(wp), intent(out) :: value                       !< derivative of the law
     real(wp), intent(out) :: rate                        !< derivative of its rate in time
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
