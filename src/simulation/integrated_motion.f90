@@ -1,5 +1,4 @@
-!> A free motion under integration: the equations of motion in the present independent coordinates, their integrator, and the
-!> change to other coordinates.
+!> A free motion under integration: the equations of motion in the present independent coordinates, their integrator, and the change to other coordinates.
 module mech9_integrated_motion
   use mech9_kinds, only: wp, long
   use mech9_integration_tolerances, only: worthwhile_improvement
@@ -27,7 +26,7 @@ module mech9_integrated_motion
   use mech9_friction_events, only: choose_modes, fail_undecided
   use mech9_held_coordinates, only: choose_held, hold_by_drives
   use mech9_motion_event, only: motion_events_type
-  use mech9_event_variation, only: event_variation_type, impact_type
+  use mech9_event_variation, only: event_variation_type, impact_type, meet_rubbing
   use mech9_impact_watcher, only: impact_watcher_type
   use mech9_side_steps, only: side_steps_type, begin_integration
   implicit none
@@ -387,6 +386,8 @@ contains
     self%system%interval%rubbing = 0
     call self%system%move_to(self%t, self%y, err)
     if (.not. allocated(err)) call self%begin_passage(met, friction, of_held, released, err)
+    if (allocated(self%passage) .and. rubbing > 0 .and. .not. allocated(err)) call meet_rubbing(self%passage, self%system, &
+      self%contacts%ends(findloc(self%contacts%ends%contact, rubbing, dim=1)), err)
     if (allocated(err)) return
     contacts_before = self%contacts
     call meet_contacts(self%system, met, rubbing, of_held, self%contacts, impulses, changes, impact, holds_change, events, err)
@@ -506,8 +507,7 @@ contains
       if (.not. allocated(err)) call self%system%pass_limits(err)
       if (.not. allocated(err)) call self%system%present(err)
       if (allocated(self%passage) .and. .not. allocated(err)) call refuse_angles(self%angles, self%t, err)
-      if (allocated(self%passage) .and. .not. allocated(err)) &
-        call self%passage%hand_on(self%variable, self%system, err)
+      if (allocated(self%passage) .and. .not. allocated(err)) call self%passage%hand_on(self%variable, self%system, err)
       if (.not. allocated(err)) call self%begin(err)
     else
       call free_system(other)
@@ -519,7 +519,7 @@ contains
     end if
   end subroutine hold_coordinates
 
-  !> Note the demands on motors and the motion of contacts from which the next step begins.
+  !> Note demands on motors and the motion of contacts from which the next step begins.
   subroutine note_start(self, err)
     class(integrated_motion_type), intent(inout) :: self   !< the motion at the start of a step
     type(error_type), allocatable, intent(out) :: err      !< allocated if the law of a motor has no value

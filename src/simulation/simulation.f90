@@ -473,7 +473,7 @@ contains
     call add_place(err, place=model%mechanism%frictions(1)%place)
   end subroutine refuse_frictions
 
-  !> Fail where contacts have friction, or rigid ones stand beside frictions of pairs, with which derivatives by parameters are not known.
+  !> Fail where compliant contacts have friction, or rigid ones stand beside frictions of pairs, with which derivatives by parameters are not known.
   subroutine refuse_contacts(model, err)
     type(model_type), intent(in) :: model               !< the model
     type(error_type), allocatable, intent(out) :: err   !< allocated where there are such contacts
@@ -482,10 +482,10 @@ contains
     if (.not. model%mechanism%has_contacts()) return
     do i = 1, size(model%mechanism%contacts)
       associate (contact => model%mechanism%contacts(i))
-        if (.not. (contact%has_friction() .or. (contact%is_rigid .and. model%mechanism%has_frictions()))) cycle
+        if (merge(.not. model%mechanism%has_frictions(), .not. contact%has_friction(), contact%is_rigid)) cycle
         call raise(err, exit_data, failure_contact_sensitivity)
         err%failure%number = contact%number
-        err%failure%limit = merge(1, 2, contact%has_friction())
+        err%failure%limit = merge(2, 1, contact%is_rigid)
         call add_place(err, place=contact%place)
         return
       end associate

@@ -7,7 +7,8 @@ module mech9_sensitivity_words
   use mech9_force_gradient_failures, only: failure_jumping_force
   use mech9_integration_failures, only: failure_jump_sensitivity
   use mech9_event_failures, only: failure_event_sensitivity, cause_grazing, cause_several_impacts, cause_start_on_stop, &
-    cause_drive_jumps, cause_followed, cause_breaks_loose, cause_held_hit
+    cause_drive_jumps, cause_followed, cause_breaks_loose, cause_held_hit, cause_contact_loose, &
+    cause_contact_rest, cause_rubbing_impact
   use mech9_simulation_failures, only: failure_angles_sensitivity, failure_friction_sensitivity
   use mech9_reaction_failures, only: failure_shared_force
   use mech9_block_names, only: chain_names
@@ -78,6 +79,12 @@ contains
       text = 'the motion begins on '//place//', and parameters move it away or behind'
     case (cause_held_hit)
       text = place//' is closed, and hit by drives whose rates jump'
+    case (cause_contact_loose)
+      text = place//' begins to slide, and its coefficient at rest is above that of sliding (give both the same value)'
+    case (cause_contact_rest)
+      text = place//' comes to rest without an acceleration'
+    case (cause_rubbing_impact)
+      text = place//' has friction, and takes part in an impact'
     case (cause_drive_jumps)
       text = 'the rate of a drive jumps while a stop or friction holds a coordinate'
     case (cause_followed)

@@ -6,6 +6,26 @@ import numpy as np
 
 from mech9_cases import read_table, run
 
+BOUNCING = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=0,0,1 /
+&body link=2, mass=2 /
+&gravity acceleration=0,0,-9.81 /
+&stop coordinate=1, low=0, restitution=0.9 /
+&initial coordinate=1, position=1 /
+&parameter name='h', sets='initial(1).position' /
+&parameter name='e', sets='stop(1).restitution' /
+&parameter name='g', sets='gravity(1).acceleration(3)' /
+&parameter name='low', sets='stop(1).low' /
+&parameter name='m', sets='body(1).mass' /
+"""
+OSCILLATOR = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&body link=2, mass=1 /
+&load kind='coordinate', coordinate=1, stiffness=1, damping=0.2 /
+&load kind='coordinate', coordinate=1, force=1, law='harmonic', amplitude=1, angular_frequency=2.5, phase=1.5707963267948966 /
+&stop coordinate=1, low=0, restitution=0.8 /
+&initial coordinate=1, position=0.5, velocity=0.1 /
+"""
 FOUR_BAR = """&structure cq=1 /
 &pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
 &pair coordinate=2, links=2,3, kind='revolute', point=0.2,0,0, axis=0,0,1 /

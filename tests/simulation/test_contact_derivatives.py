@@ -1,12 +1,14 @@
-"""Derivatives by parameters through contacts of links without friction: impacts, compliant contacts, sliding and lifting off, against closed
+"""Derivatives by parameters through contacts of links: impacts, compliant contacts, sliding and sticking, lifting off, against closed
 forms and independent integrations in complex numbers, whose derivatives are exact.
 
-Compares the program with itself: derivatives of mechanisms with several coordinates against differences of runs."""
+Compares the program with itself: derivatives of mechanisms with several coordinates against differences of runs; exponents and periodic
+motions with a contact and with a stop at the same place."""
 import cmath
+import json
 
 import pytest
 
-from event_derivative_cases import COLUMNS, FOUR_BAR, TIGHT, against_differences, go, kinds
+from event_derivative_cases import BOUNCING, COLUMNS, FOUR_BAR, OSCILLATOR, TIGHT, against_differences, go, kinds
 
 INCLINED = """&structure cq=1,2,3 /
 &pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
@@ -309,3 +311,122 @@ def test_several_coordinates(checks, mech9d, tmp_path, case, text, columns, end,
         text = with_cam(tmp_path, text)
     report = against_differences(checks, mech9d, tmp_path, text, columns, end, 6, output)
     checks.true(found in kinds(report), 'the event of the case', kinds(report))
+
+
+BILLIARD = """&structure cq=1,2,3,4,5,6 /
+&pair coordinates=1,2,3,4,5,6, links=1,2, kind='free' /
+&initial coordinate=1, position=0, velocity=1 /
+&initial coordinate=2, position=0, velocity=0.1 /
+&initial coordinate=3, position=0.2, velocity=0 /
+&initial coordinate=4, position=0, velocity=1 /
+&initial coordinate=5, position=0 /
+&initial coordinate=6, position=0, velocity=0.3 /
+&body link=2, mass=2, inertia=0.032,0.032,0.032,0,0,0 /
+&gravity acceleration=0,0,-9.81 /
+&point name='C', link=2, position=0,0,0 /
+&contact point='C', radius=0.2, friction=0.2 /
+&parameter name='v', sets='initial(1).velocity' /
+&parameter name='w', sets='initial(4).velocity' /
+&parameter name='m', sets='body(1).mass' /
+&parameter name='mu', sets='contact(1).friction' /
+&parameter name='g', sets='gravity(1).acceleration(3)' /
+"""
+
+
+def billiard(end, v, w, m, mu, g):
+    """A ball that slides straight against its friction, and then rolls."""
+    r, inertia = 0.2, 0.032
+    slip = [v, 0.1 + r * w]
+    size = cmath.sqrt(slip[0]**2 + slip[1]**2)
+    at_rest = size / (-mu * g * (1 + m * r * r / inertia))
+    t = end if at_rest.real > end else at_rest
+    values = []
+    for rate, part in ((v, slip[0] / size), (0.1, slip[1] / size)):
+        after = rate + mu * g * t * part
+        values += [rate * t + mu * g * t * t / 2 * part + after * (end - t), after]
+    return values
+
+
+@pytest.mark.parametrize('end, sticks', [(0.1, False), (0.3, True)])
+def test_a_ball_that_slides_and_rolls(checks, mech9d, tmp_path, end, sticks):
+    """Friction in space: by rates at the start, the mass, the coefficient and gravity."""
+    at = {'v': 1, 'w': 1, 'm': 2, 'mu': 0.2, 'g': -9.81}
+    # tolerance: the time of rest is that of dense output, by which the friction jumps
+    report = against_complex(checks, mech9d, tmp_path, BILLIARD, billiard, at, end, 1e-7)
+    checks.true((('stick', 1) in kinds(report)) == sticks, 'it rolls in the end', kinds(report))
+
+
+#: A foot on an elastic leg, which slides and sticks on the ground; its sole is round.
+FOOT = """&structure cq=1,2,3 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&pair coordinate=2, links=2,3, kind='prismatic', axis=0,0,1 /
+&pair coordinate=3, links=3,4, kind='revolute', axis=0,1,0 /
+&body link=4, mass=2, centre=0.05,0,0.1, inertia=0.02,0.03,0.02,0,0,0 /
+&gravity acceleration=0,0,-9.81 /
+&load kind='coordinate', coordinate=3, stiffness=30, damping=0.3 /
+&load kind='coordinate', coordinate=1, stiffness=40 /
+&point name='F', link=4, position=0,0,-0.25 /
+&contact point='F', radius=0.05, friction=0.25 /
+&initial coordinate=1, position=0.1, velocity=1.5 /
+&initial coordinate=2, position=0.3 /
+&initial coordinate=3, position=0 /
+&parameter name='m', sets='body(1).mass' /
+&parameter name='c', sets='body(1).centre(1)' /
+&parameter name='k', sets='load(2).stiffness' /
+&parameter name='mu', sets='contact(1).friction' /
+&parameter name='v', sets='initial(1).velocity' /
+"""
+@pytest.mark.parametrize('text, columns, end, found', [
+    (FOOT, ('q1', 'dq1', 'q2', 'q3', 'dq3', 'R1.fz', 'R3.fx'), 1.0, ('slip', 1))], ids=['foot'])
+def test_friction_in_contacts(checks, mech9d, tmp_path, text, columns, end, found):
+    """A foot that slides, sticks and slides back."""
+    output = COLUMNS.replace(' /', ', reactions=.true. /')
+    report = against_differences(checks, mech9d, tmp_path, text, columns, end, 6, output)
+    checks.true(found in kinds(report), 'the event of the case', kinds(report))
+
+
+@pytest.mark.parametrize('text, stop, contact, words, found', ids=['exponents', 'lost', 'periodic'], argvalues=[
+    (OSCILLATOR, '&stop coordinate=1, low=0, restitution=0.8 /', 'normal=1,0,0, restitution=0.8',
+     ('&exponents transient=100 /\n', 300.0, '--exponents', '2'), lambda report: report['exponents'] + [report['divergence']]),
+    (BOUNCING, '&stop coordinate=1, low=0, restitution=0.9 /', 'restitution=0.9',
+     ('&exponents transient=1 /\n', 12.0, '--exponents', '2'), lambda report: report['exponents']),
+    (OSCILLATOR, '&stop coordinate=1, low=0, restitution=0.8 /', 'normal=1,0,0, restitution=0.8',
+     ('&periodic starts=3 /\n', 1.0, '--periodic'), lambda report: sum(report['periodic_motions'][0]['multipliers'], []))])
+def test_a_contact_in_place_of_a_stop(checks, mech9d, tmp_path, text, stop, contact, words, found):
+    """Exponents through impacts, those of minus infinity where a contact closes, and a periodic motion: as with a stop."""
+    settings, end, *options = words
+    plain = '\n'.join(line for line in text.splitlines() if 'parameter' not in line) + '\n'
+    reports = []
+    for case in (plain, plain.replace(stop, f"&point name='P', link=2, position=0,0,0 /\n&contact point='P', {contact} /")):
+        go(mech9d, tmp_path, case + TIGHT + settings, *options, end=end)
+        reports.append(found(json.loads((tmp_path / 'event.json').read_text())))
+    if None in reports[0]:
+        checks.equal(reports[1], reports[0], 'the same are lost')
+    else:
+        # tolerance: that of the integration, in which both differ by round-off alone
+        checks.near(reports[1], reports[0], 1e-9, 'the same numbers', scale=1)
+
+
+@pytest.mark.parametrize('change, code, words', [
+    (("&parameter name='x'", "&contact point='C', link=4, radius=0.3, origin=0.2,0,-0.5, normal=-0.5,0,2 /\n&parameter name='x'"), 6,
+     'contact 1 is hit together with another stop or contact'),
+    (('position=0.9, velocity=0.2', 'position=-0.34076707807867545, velocity=-0.2'), 6, 'and parameters move it away or behind'),
+    (('restitution=0.7', 'restitution=0.7, friction=0.1'), 6, 'contact 1 has friction, and takes part in an impact'),
+    (('restitution=0.7', 'stiffness=1e4, friction=0.1'), 3, 'are not computed with friction in compliant contacts, as in contact 1'),
+    (("&parameter name='x'", "&friction coordinate=2, dynamic=0.1, preload=1 /\n&parameter name='x'"), 3,
+     'are not computed with frictions of pairs beside rigid contacts, as contact 1')],
+    ids=['two', 'start', 'friction', 'compliant', 'pairs'])
+def test_refusals(checks, mech9d, tmp_path, change, code, words):
+    """Two impacts at once, a start on a contact, friction in an impact, in a compliant contact, and of a pair beside a contact."""
+    text = INCLINED.replace(*change, 1)
+    if code == 6 or 'stiffness' in text:
+        text = '\n'.join(line for line in text.splitlines() if "'e'" not in line) + '\n'
+    _, _, told = go(mech9d, tmp_path, text + COLUMNS, code=code)
+    checks.true(words in told, words, told)
+
+
+def test_the_scale_of_a_path(checks, mech9d, tmp_path):
+    """A parameter that sets the scale of a path is refused by its name."""
+    text = with_cam(tmp_path, CAM).replace("file='cam.dat'", "file='cam.dat', scale=1") + "&parameter name='s', sets='contact(1).scale' /\n"
+    _, _, told = go(mech9d, tmp_path, text + COLUMNS, code=3)
+    checks.true("derivatives by the parameter 's' are not computed" in told, 'it is named', told)

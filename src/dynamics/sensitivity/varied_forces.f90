@@ -211,7 +211,7 @@ contains
       call show_change(p, twists, motion, self%loaded, self%view, self%change)
       call vary_loads(model, p, motion, self, err)
       if (allocated(err)) return
-      if (allocated(motion%contact)) call add_contacts(model, motion%contact(p, :), self)
+      if (allocated(motion%contact)) call add_contacts(model, reshape(motion%contact(p, :), [3, size(motion%contact, 2)/3]), self)
       do i = 1, size(self%loaded)
         k = self%loaded(i)
         f = motion%plan%frame_of(k)
@@ -252,20 +252,20 @@ contains
     end do
   end subroutine vary_loads
 
-  !> Add the derivatives of the normal forces of rigid contacts, which their loads hold.
+  !> Add the derivatives of the forces of rigid contacts, which their loads hold.
   subroutine add_contacts(model, forces, self)
     type(model_type), intent(in) :: model               !< the model
-    real(wp), intent(in) :: forces(:)                   !< (contacts) derivatives by one parameter [N]
+    real(wp), intent(in) :: forces(:, :)                !< (3,contacts) derivatives by one parameter, fixed axes [N]
     type(varied_forces_type), intent(inout) :: self     !< with the motion as loads read it; its sums grow
     type(contact_place_type) :: place
     integer :: i, side
 
-    do i = 1, size(forces)
-      if (.not. abs(forces(i)) > 0.0_wp) cycle
+    do i = 1, size(forces, 2)
+      if (.not. any(abs(forces(:, i)) > 0.0_wp)) cycle
       associate (contact => model%mechanism%contacts(i), links => self%view%links, sum => self%sum_change)
         place = contact%find_place(links(contact%links(1)), links(contact%links(2)))
         do side = 1, 2
-          associate (k => contact%links(side), force => (3 - 2*side)*forces(i)*place%normal)
+          associate (k => contact%links(side), force => (3 - 2*side)*forces(:, i))
             sum%force(:, k) = sum%force(:, k) + force
             sum%torque(:, k) = sum%torque(:, k) + cross(place%at - links(k)%p, force)
           end associate

@@ -43,7 +43,8 @@ module mech9_varied_motion
     real(wp), allocatable :: held(:, :, :)          !< (P,0:2,M) given, too: of driven coordinates, beside those of their drives' numbers;
                                                     !< not allocated: none
     real(wp), allocatable :: friction(:, :)         !< (P,frictions) of their forces; not allocated: these are held [N m, N]
-    real(wp), allocatable :: contact(:, :)          !< (P,contacts) of normal forces of rigid contacts; not allocated: these are held [N]
+    real(wp), allocatable :: contact(:, :)          !< (P,3 contacts) of the forces of rigid contacts beside those that turn with them, fixed
+                                                    !< axes; not allocated: these are held [N]
     real(wp), allocatable :: twists(:, :, :, :)     !< (P,6,0:2,0:M) of the frames
     type(tangent_type), allocatable :: tangents(:)  !< (P) of the constants
     class(plan_type), allocatable :: plan           !< in space

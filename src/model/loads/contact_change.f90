@@ -13,7 +13,7 @@ module mech9_contact_change
   implicit none
   private
   public :: gap_shape_type, contact_change_type, find_gap_shape, numbers_of_contact, change_of_contact, surface_change, &
-    vary_normal_force, number_count, of_restitution
+    vary_normal_force, number_count, of_restitution, of_sliding
 
   !> The gap near a place of the ball's centre, in the axes of the surface's link.
   type :: gap_shape_type
@@ -25,6 +25,7 @@ module mech9_contact_change
     real(wp), private :: length = 0.0_wp       !< from the centre of a ball that is the surface; 0: other surfaces [m]
   contains
     procedure :: bent
+    procedure :: bent_along
   end type gap_shape_type
 
   !> The derivative of a contact by a parameter.
@@ -35,13 +36,13 @@ module mech9_contact_change
     real(wp) :: centre(3) = 0.0_wp    !< of the position of the ball's centre, fixed axes [m]
   end type contact_change_type
 
-  !> How many numbers a contact has, and the place of its restitution among them.
-  integer, parameter :: number_count = 21, of_restitution = 21
+  !> How many numbers a contact has, and the places of its restitution and of its coefficient of sliding friction among them.
+  integer, parameter :: number_count = 23, of_restitution = 21, of_sliding = 22
 
 contains
 
   !> The numbers of a contact: centre and radius of the ball; origin, axes and radius of the surface, its normal in place of axes if it is
-  !> a plane; stiffness, damping, exponent and restitution. The points of a profile are not among them.
+  !> a plane; stiffness, damping, exponent, restitution and both coefficients of friction. The points of a profile are not among them.
   pure function numbers_of_contact(contact) result(values)
     type(contact_type), intent(in) :: contact   !< the contact
     real(wp) :: values(number_count)
@@ -49,7 +50,8 @@ contains
     values(1:7) = [contact%center, contact%radius, contact%origin]
     values(8:16) = reshape(contact%axes, [9])
     if (contact%surface == plane_surface) values(8:10) = contact%normal
-    values(17:) = [contact%other_radius, contact%stiffness, contact%damping, contact%exponent, contact%restitution]
+    values(17:) = [contact%other_radius, contact%stiffness, contact%damping, contact%exponent, contact%restitution, &
+                   contact%sliding_friction, contact%static_friction]
   end function numbers_of_contact
 
   !> The gap near a place of the ball's centre.
@@ -88,19 +90,28 @@ contains
     class(gap_shape_type), intent(in) :: self   !< the gap near the place
     real(wp), intent(in) :: a(3)                !< the vector, in the axes of the surface's link [m/s]
     real(wp), intent(in) :: change(3)           !< of the place, in these axes [m]
-    real(wp) :: along, across
 
-    bent = 0.0_wp
-    across = dot_product(self%normal, a)
-    if (self%length > 0.0_wp) then
-      bent = -((dot_product(a, a) - across**2)*dot_product(self%normal, change) &
-               + 2.0_wp*across*(dot_product(a, change) - across*dot_product(self%normal, change)))/self%length**2
-    else if (abs(self%turning) > 0.0_wp .or. abs(self%slope) > 0.0_wp) then
-      along = dot_product(self%tangent, a)
-      bent = along**2*(self%slope*dot_product(self%tangent, change) - self%turning**2*dot_product(self%normal, change)) &
-             - 2.0_wp*along*across*self%turning**2*dot_product(self%tangent, change)
-    end if
+    bent = dot_product(a, self%bent_along(a, change))
   end function bent
+
+  !> The derivative of H a along a change of the place, the vector a held, in the axes of the surface's link [1/s].
+  pure function bent_along(self, a, change) result(vector)
+    class(gap_shape_type), intent(in) :: self   !< the gap near the place
+    real(wp), intent(in) :: a(3)                !< the vector, in the axes of the surface's link [m/s]
+    real(wp), intent(in) :: change(3)           !< of the place, in these axes [m]
+    real(wp) :: vector(3), across(2), along(2)
+
+    vector = 0.0_wp
+    across = [dot_product(self%normal, a), dot_product(self%normal, change)]
+    if (self%length > 0.0_wp) then
+      vector = -((dot_product(a, change) - across(1)*across(2))*self%normal + across(2)*(a - across(1)*self%normal) &
+                 + across(1)*(change - across(2)*self%normal))/self%length**2
+    else if (abs(self%turning) > 0.0_wp .or. abs(self%slope) > 0.0_wp) then
+      along = [dot_product(self%tangent, a), dot_product(self%tangent, change)]
+      vector = self%slope*along(1)*along(2)*self%tangent - self%turning**2*((across(2)*along(1) + across(1)*along(2))*self%tangent &
+                                                                            + along(1)*along(2)*self%normal)
+    end if
+  end function bent_along
 
   !> The twist of the surface in its link by a change of the contact's numbers: its rotation, and the shift of `origin`.
   pure function surface_change(contact, numbers) result(twist)

@@ -69,7 +69,7 @@ contains
   end subroutine apply
 
   !> Add the derivative of the force by a parameter on which the motion depends. The normal force of a rigid contact is held, but turns
-  !> with the normal. There is no friction.
+  !> with the normal, and friction stays at right angles to it.
   subroutine vary(self, state, change, changes, err)
     class(contact_load_type), intent(in) :: self        !< the load
     type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
@@ -102,8 +102,7 @@ contains
     call add_change(self, state, link_change_type(), link_change_type(), factor*change, changes)
   end subroutine vary_by_numbers
 
-  !> Add the derivative of the force by a change of the motion of both links, or of the numbers. The line of the force goes through the
-  !> centre of the ball.
+  !> Add the derivative of the force by a change of the motion of both links, or of the numbers.
   pure subroutine add_change(self, state, ball_change, surface_change, own, changes)
     type(contact_load_type), intent(in) :: self             !< the load
     type(motion_view_type), intent(in) :: state             !< present motion of links and coordinates
@@ -113,7 +112,7 @@ contains
     type(force_sum_type), intent(inout) :: changes          !< derivatives of forces so far; those of the load are added
     type(contact_place_type) :: place
     type(contact_change_type) :: varied
-    real(wp), dimension(3) :: force, force_change, centre, arm_change
+    real(wp), dimension(3) :: force, force_change, at_change, arm_change
     real(wp) :: size_of_force
     integer :: side
 
@@ -131,13 +130,18 @@ contains
       force = size_of_force*place%normal
       force_change = size_of_force*varied%normal &
                      + vary_normal_force(self%contact, place%gap, place%gap_rate(), varied, own)*place%normal
-      centre = state%links(links(1))%point_position(self%contact%center)
+      if (allocated(state%contact_force) .and. self%contact%has_friction()) then
+        force = state%contact_force(:, self%number)
+        force_change = force_change - dot_product(force - size_of_force*place%normal, varied%normal)*place%normal
+      end if
+      at_change = varied%centre - self%contact%radius*varied%normal
+      if (size(own) > 0) at_change = at_change - own(4)*place%normal
       do side = 1, 2
-        arm_change = varied%centre - merge(ball_change%shift, surface_change%shift, side == 1)
+        arm_change = at_change - merge(ball_change%shift, surface_change%shift, side == 1)
         associate (k => links(side))
           changes%force(:, k) = changes%force(:, k) + (3 - 2*side)*force_change
           changes%torque(:, k) = changes%torque(:, k) &
-                                 + (3 - 2*side)*(cross(arm_change, force) + cross(centre - state%links(k)%p, force_change))
+                                 + (3 - 2*side)*(cross(arm_change, force) + cross(place%at - state%links(k)%p, force_change))
         end associate
       end do
     end associate

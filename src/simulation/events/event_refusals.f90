@@ -1,12 +1,14 @@
 !> Refusals of derivatives by parameters at events that have none.
 module mech9_event_refusals
+  use mech9_kinds, only: wp
+  use mech9_event_tolerances, only: touching
   use mech9_error, only: error_type, raise, add_place, exit_singular
   use mech9_event_failures, only: failure_event_sensitivity
   use mech9_motion_system, only: motion_system_type
   use mech9_stop_contacts, only: stop_contact_type
   implicit none
   private
-  public :: refuse, refuse_at, follows_jumps
+  public :: refuse, refuse_at, follows_jumps, hits_others
 
 contains
 
@@ -74,4 +76,21 @@ contains
     is_position = column(1:1) == 'q' .and. verify(column(2:), '0123456789') == 0
     if (index(column, '.pole.') == 0) is_position = is_position .or. any(column(n - 1:) == ['.x', '.y', '.z'])
   end function is_position
+
+  !> Whether a rigid contact that is open is hit beside those that have impulses, and needs none because these imply it.
+  pure logical function hits_others(contacts, ends, gap_motion, length) result(hits)
+    type(stop_contact_type), intent(in) :: contacts(:)         !< all ends of stops and contacts
+    integer, intent(in) :: ends(:)                             !< numbers of those with impulses
+    real(wp), allocatable, intent(in) :: gap_motion(:, :)      !< (0:2,contacts) gaps, their rates and accelerations before the impact [m]
+    real(wp), intent(in) :: length                             !< of the mechanism [m]
+    integer :: i
+
+    hits = .false.
+    do i = 1, size(contacts)
+      if (contacts(i)%is_stop() .or. contacts(i)%closed .or. .not. contacts(i)%is_rigid .or. any(ends == i)) cycle
+      associate (motion => gap_motion(:, contacts(i)%contact))
+        hits = hits .or. (motion(1) <= 4.0_wp*touching*length .and. motion(2) < 0.0_wp)
+      end associate
+    end do
+  end function hits_others
 end module mech9_event_refusals

@@ -15,7 +15,8 @@ module mech9_event_variation
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_event_failures, only: cause_grazing, cause_several_impacts, cause_start_on_stop, cause_no_motion, &
-    cause_drive_jumps, cause_followed, cause_breaks_loose, cause_held_hit
+    cause_drive_jumps, cause_followed, cause_breaks_loose, cause_held_hit, cause_contact_loose, &
+    cause_contact_rest, cause_rubbing_impact
   use mech9_event_tolerances, only: grazing, least_rebound
   use mech9_cholesky, only: cholesky_factorize, cholesky_solve
   use mech9_state, only: state_type, copy_state
@@ -28,15 +29,15 @@ module mech9_event_variation
   use mech9_motion_view, only: link_motion_type
   use mech9_contact, only: contact_place_type
   use mech9_contact_change, only: of_restitution
-  use mech9_contact_motion, only: place_of_contact
-  use mech9_varied_contacts, only: vary_gap, varied_numbers
+  use mech9_contact_motion, only: place_of_contact, acceleration_of_contact
+  use mech9_varied_contacts, only: contact_variation_type, vary_contact, varied_numbers
   use mech9_stop_contacts, only: stop_contact_type, gap_motion, gap_acceleration
   use mech9_release_rate, only: find_use_rate
-  use mech9_event_refusals, only: refuse, refuse_at, follows_jumps
+  use mech9_event_refusals, only: refuse, refuse_at, follows_jumps, hits_others
   use mech9_contact_equations, only: contact_equations_type, find_contact_equations
   implicit none
   private
-  public :: event_variation_type, impact_type
+  public :: event_variation_type, impact_type, meet_rubbing
 
   !> An impact, as the motion had it.
   type :: impact_type
@@ -53,7 +54,8 @@ module mech9_event_variation
     real(wp), allocatable :: dq(:)            !< (M) rates of all coordinates before the event [rad/s, m/s]
     real(wp), allocatable :: ddq(:)           !< (M) their accelerations before it [rad/s^2, m/s^2]
     real(wp), allocatable :: motor_rates(:)   !< (motors) rates of the states of motors before it
-    real(wp), allocatable :: gaps(:, :, :)    !< (P,0:2,contacts) derivatives of gaps and of their derivatives in time, at a fixed time before it
+    real(wp), allocatable :: gaps(:, :, :)    !< (P,0:2,contacts) derivatives of gaps, of their rates, and of slips in the direction in which
+                                              !< contacts slide, at a fixed time before it [m, m/s]
     real(wp), allocatable :: gap_motion(:, :) !< (0:2,contacts) the gaps, their rates and accelerations before it [m]
   contains
     procedure :: begin
@@ -171,6 +173,7 @@ contains
     class(event_variation_type), intent(inout) :: self     !< gets them
     class(motion_system_type), intent(in) :: system        !< the system before the event, with its motion
     type(stop_contact_type) :: end
+    type(contact_variation_type) :: variation
     integer :: i
 
     associate (n => size(system%model%mechanism%contacts), mechanism => system%model%mechanism)
@@ -179,7 +182,9 @@ contains
         end = stop_contact_type(contact=i, is_rigid=mechanism%contacts(i)%is_rigid)
         self%gap_motion(0:1, i) = gap_motion(mechanism, system%plan, system%state, end)
         self%gap_motion(2, i) = gap_acceleration(mechanism, system%plan, system%state, end)
-        call vary_gap(system%model, system%sensitivity%motion, i, self%gaps(:, :, i))
+        call vary_contact(system%model, system%sensitivity%motion, i, variation)
+        self%gaps(:, 0:1, i) = variation%gaps(:, 0:1)
+        self%gaps(:, 2, i) = matmul(variation%slips(:, :, 0), system%contact%direction(:, i))
       end do
     end associate
   end subroutine keep_gaps
@@ -244,6 +249,31 @@ contains
     end associate
   end subroutine meet_friction
 
+  !> Take the time at which a contact that slides comes to rest. Where one that sticks begins to slide, accelerations do not jump if its
+  !> coefficients at rest and of sliding are the same, and the time does not matter. Fails where there are no derivatives.
+  subroutine meet_rubbing(self, system, end, err)
+    class(event_variation_type), intent(inout) :: self     !< the derivatives, at a fixed time
+    class(motion_system_type), intent(in) :: system        !< the system before the event, with its modes of contacts
+    type(stop_contact_type), intent(in) :: end             !< the contact
+    type(error_type), allocatable, intent(out) :: err      !< allocated if there are no derivatives
+    real(wp) :: acceleration
+
+    associate (contact => system%model%mechanism%contacts(end%contact), direction => system%contact%direction(:, end%contact))
+      if (system%contact%sticks(end%contact)) then
+        if (contact%static_friction > contact%sliding_friction) call refuse_at(system, cause_contact_loose, end, err)
+        return
+      end if
+      acceleration = dot_product(direction, acceleration_of_contact(contact, system%plan, system%state))
+      if (.not. acceleration < 0.0_wp) then
+        call refuse_at(system, cause_contact_rest, end, err)
+      else if (follows_jumps(system, .false.)) then
+        call refuse(system, cause_followed, 0, err)
+      else
+        call self%set_time(-self%gaps(:, 2, end%contact)/acceleration)
+      end if
+    end associate
+  end subroutine meet_rubbing
+
   !> Take the time at which a pair that sticks alone comes to its bound, above that of sliding: the part of the bound that it needs is 1
   !> there. Fails where this part does not change in time.
   subroutine break_loose(self, system, number, err)
@@ -284,10 +314,16 @@ contains
         call refuse(system, cause_followed, 0, err)
         return
       end if
-      if (count(.not. ends%held) > 1) then
+      if (count(.not. ends%held) > 1 .or. hits_others(contacts, impact%ends, self%gap_motion, system%plan%length)) then
         call refuse_at(system, cause_several_impacts, ends(findloc(ends%held, .false., dim=1)), err)
         return
       end if
+      do i = 1, size(ends)
+        if (ends(i)%is_stop()) cycle
+        if (.not. system%model%mechanism%contacts(ends(i)%contact)%has_friction()) cycle
+        call refuse_at(system, cause_rubbing_impact, ends(i), err)
+        return
+      end do
       do i = 1, size(ends)
         if (ends(i)%held) cycle
         if (at_start) then
@@ -400,7 +436,8 @@ contains
     real(wp), intent(in) :: target(:, :)                       !< (P,ends) derivatives of the rates of their gaps there
     type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
     real(wp) :: factors(size(ends), size(ends)), impulses(size(ends))
-    real(wp) :: changes(size(target, 1), 0:2), left(size(target, 1), size(ends))
+    real(wp) :: left(size(target, 1), size(ends))
+    type(contact_variation_type) :: variation
     integer :: i, j, p, failed_at
 
     system%state%dq = rates
@@ -420,8 +457,8 @@ contains
       if (ends(i)%is_stop()) then
         left(:, i) = left(:, i) - ends(i)%direction*system%sensitivity%motion%q(:, 1, ends(i)%coordinate)
       else
-        call vary_gap(system%model, system%sensitivity%motion, ends(i)%contact, changes)
-        left(:, i) = left(:, i) - changes(:, 1)
+        call vary_contact(system%model, system%sensitivity%motion, ends(i)%contact, variation)
+        left(:, i) = left(:, i) - variation%gaps(:, 1)
       end if
     end do
     associate (values => system%sensitivity%values, plan => system%plan)

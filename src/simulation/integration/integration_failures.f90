@@ -4,7 +4,7 @@ module mech9_integration_failures
   private
   public :: failure_singular_step, failure_unclosed_step, failure_other_branch, failure_drive_jumps, &
     failure_jump_sensitivity, failure_no_friction, failure_contact_paradox, failure_cornered_contact, &
-    last_integration_failure
+    failure_shared_contact, last_integration_failure
 
   !> A position inside a step is too near to a singular one for the independent coordinates.
   integer, parameter :: failure_singular_step = 1301
@@ -23,5 +23,8 @@ module mech9_integration_failures
   integer, parameter :: failure_contact_paradox = 1307
   !> Derivatives by parameters are not known where a contact is closed on a path with corners, or at its end: number (of the contact), t.
   integer, parameter :: failure_cornered_contact = 1308
-  integer, parameter :: last_integration_failure = failure_cornered_contact
+  !> Derivatives by parameters are not known where equilibrium does not determine the forces of closed contacts, with friction or where
+  !> forces are wanted: number (of the first of these contacts), t.
+  integer, parameter :: failure_shared_contact = 1309
+  integer, parameter :: last_integration_failure = failure_shared_contact
 end module mech9_integration_failures

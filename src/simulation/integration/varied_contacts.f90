@@ -1,18 +1,21 @@
-!> The derivatives of gaps of contacts by parameters, and of the forces of rigid contacts that are closed, in a motion whose variational
-!> equations are integrated.
+!> The derivatives of gaps and slips of contacts by parameters, and of the forces of rigid contacts that are closed, in a motion whose
+!> variational equations are integrated.
 !>
 !> Seen from the link of the surface, the centre of the ball is at x, and its change by a parameter is the difference of the twists by which
 !> both links move, at the centre. The second derivative of the gap g, n . x'' + x' . H x', changes by n . dx'' + 2 x' . H dx' +
-!> x'' . H dx + (x' . dH x'). A closed contact leaves it no change: with the rows J of the gaps, the derivatives of the normal forces
-!> satisfy J M^-1 J^T f' = -(change under forces that are held).
+!> x'' . H dx + (x' . dH x'). The slip is x' - r w x n, with the angular velocity w of the ball against the surface. A closed contact leaves
+!> the second derivative of the gap no change, one that sticks the acceleration of the slip, too: with the rows J of these conditions and the
+!> columns K of the unknown forces, whose derivatives are f', J M^-1 K^T f' = -(change under forces that are held). The friction of a contact
+!> that slides follows its normal force, and turns with the slip.
 module mech9_varied_contacts
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data
-  use mech9_integration_failures, only: failure_cornered_contact
+  use mech9_integration_failures, only: failure_cornered_contact, failure_shared_contact
+  use mech9_integration_tolerances, only: slip_of_errors
   use mech9_rotation, only: cross, turn, turn_back
   use mech9_friction_cones, only: solve_least
   use mech9_contact, only: contact_type
-  use mech9_contact_change, only: gap_shape_type, find_gap_shape, surface_change
+  use mech9_contact_change, only: gap_shape_type, find_gap_shape, surface_change, of_sliding
   use mech9_contact_load, only: contact_load_type
   use mech9_mechanism, only: mechanism_type
   use mech9_model, only: model_type
@@ -27,7 +30,15 @@ module mech9_varied_contacts
   use mech9_contact_motion, only: contact_motion_type, contact_rows_type, find_contact_rows
   implicit none
   private
-  public :: vary_gap, varied_numbers, find_varied_contacts
+  public :: contact_variation_type, vary_contact, varied_numbers, find_varied_contacts
+
+  !> The derivatives of one contact by all parameters.
+  type :: contact_variation_type
+    real(wp), allocatable :: gaps(:, :)       !< (P,0:2) of the gap and its derivatives in time [m]
+    real(wp), allocatable :: slips(:, :, :)   !< (P,3,0:1) of the slip and its derivative in time as seen from the surface, fixed axes [m/s]
+    real(wp), allocatable :: turns(:, :)      !< (P,3) rotation of the surface, fixed axes [rad]
+    real(wp), allocatable :: sliding(:)       !< (P) of the coefficient of sliding friction
+  end type contact_variation_type
 
   !> The motion of a ball's centre as seen from the link of the surface, and what its changes need; of links and centre along fixed axes.
   type :: relative_motion_type
@@ -36,9 +47,13 @@ module mech9_varied_contacts
     real(wp), dimension(3) :: omega, alpha                  !< turning of the surface's link [rad/s, rad/s^2]
     real(wp) :: centre(3, 0:2) = 0.0_wp                     !< position, velocity and acceleration of the centre [m]
     real(wp) :: x(3, 0:2) = 0.0_wp                          !< the same from the surface's `origin`, along the axes of its link [m]
+    real(wp) :: spin(3, 0:1) = 0.0_wp                       !< turning of the ball's link as seen from it, along these axes [rad/s]
   contains
     procedure :: seen
   end type relative_motion_type
+
+  !> A contact does not move along an axis where its mobility is this part of the largest: the square of round-off.
+  real(wp), parameter :: least_mobility = epsilon(1.0_wp)**2
 
 contains
 
@@ -59,38 +74,77 @@ contains
     if (.not. allocated(changes)) allocate (changes(0))
   end function varied_numbers
 
-  !> The derivatives of the gap of a contact, and of its derivatives in time, by all parameters. The second one needs all accelerations,
-  !> and their derivatives.
-  subroutine vary_gap(model, motion, number, changes)
-    type(model_type), intent(in) :: model              !< the model
-    type(varied_motion_type), intent(in) :: motion     !< derivatives of the motion
-    integer, intent(in) :: number                      !< of the contact
-    real(wp), intent(out) :: changes(:, 0:)            !< (P,0:2) the derivatives [m, m/s, m/s^2]
+  !> The derivatives of a contact by all parameters. The second derivative of the gap, and that of the slip in time, need all
+  !> accelerations and their derivatives.
+  subroutine vary_contact(model, motion, number, variation)
+    type(model_type), intent(in) :: model                        !< the model
+    type(varied_motion_type), intent(in) :: motion               !< derivatives of the motion
+    integer, intent(in) :: number                                !< of the contact
+    type(contact_variation_type), intent(out) :: variation       !< the derivatives
     type(relative_motion_type) :: relative
     type(gap_shape_type) :: shape
     real(wp), dimension(motion%n_parameters, 6, 0:2) :: ball, surface
     real(wp), allocatable :: numbers(:)
-    real(wp) :: moved(3, 0:2)
+    real(wp) :: moved(3, 0:2), twist(6), slips(3, 0:1)
     integer :: p
 
-    associate (contact => model%mechanism%contacts(number))
+    associate (contact => model%mechanism%contacts(number), n => motion%n_parameters)
+      allocate (variation%gaps(n, 0:2), variation%slips(n, 3, 0:1), variation%turns(n, 3), variation%sliding(n), source=0.0_wp)
       call find_relative(contact, motion%plan, motion%state, relative)
       shape = find_gap_shape(contact, relative%x(:, 0))
       call link_twists(motion, contact%links(1), ball)
       call link_twists(motion, contact%links(2), surface)
-      do p = 1, motion%n_parameters
+      do p = 1, n
         numbers = varied_numbers(model%mechanism, motion%tangents(p), number)
+        twist = surface_change(contact, numbers)
         call find_moved(contact, motion%plan, relative, ball(p, :, :) - surface(p, :, :), numbers, moved)
-        associate (x => relative%x, bent => matmul(shape%bending, moved(:, 0)))
-          changes(p, 0) = dot_product(shape%normal, moved(:, 0))
-          if (size(numbers) > 0) changes(p, 0) = changes(p, 0) - numbers(4) - numbers(17)
-          changes(p, 1) = dot_product(shape%normal, moved(:, 1)) + dot_product(x(:, 1), bent)
-          changes(p, 2) = dot_product(shape%normal, moved(:, 2)) + 2.0_wp*dot_product(x(:, 1), matmul(shape%bending, moved(:, 1))) &
-                          + dot_product(x(:, 2), bent) + shape%bent(x(:, 1), moved(:, 0))
+        associate (x => relative%x, bent => matmul(shape%bending, moved(:, 0)), gaps => variation%gaps)
+          gaps(p, 0) = dot_product(shape%normal, moved(:, 0))
+          gaps(p, 1) = dot_product(shape%normal, moved(:, 1)) + dot_product(x(:, 1), bent)
+          gaps(p, 2) = dot_product(shape%normal, moved(:, 2)) + 2.0_wp*dot_product(x(:, 1), matmul(shape%bending, moved(:, 1))) &
+                       + dot_product(x(:, 2), bent) + shape%bent(x(:, 1), moved(:, 0))
         end associate
+        if (size(numbers) > 0) then
+          variation%gaps(p, 0) = variation%gaps(p, 0) - numbers(4) - numbers(17)
+          variation%sliding(p) = numbers(of_sliding)
+        end if
+        variation%turns(p, :) = surface(p, 1:3, 0) + turn(relative%r, twist(1:3))
+        if (.not. contact%has_friction()) cycle
+        call vary_slip(contact, shape, relative, ball(p, 1:3, :) - surface(p, 1:3, :), numbers, moved, slips)
+        variation%slips(p, :, 0) = turn(relative%r, slips(:, 0))
+        variation%slips(p, :, 1) = turn(relative%r, slips(:, 1))
       end do
     end associate
-  end subroutine vary_gap
+  end subroutine vary_contact
+
+  !> The changes of the slip and of its derivative in time by one parameter, as seen from the surface, which may turn in its link.
+  pure subroutine vary_slip(contact, shape, relative, turns, numbers, moved, slips)
+    type(contact_type), intent(in) :: contact                !< the contact
+    type(gap_shape_type), intent(in) :: shape                !< its gap near the place
+    type(relative_motion_type), intent(in) :: relative       !< the motion
+    real(wp), intent(in) :: turns(3, 0:2)                    !< of the ball's link against the surface's, and derivatives in time, fixed axes
+    real(wp), intent(in) :: numbers(:)                       !< derivatives of the contact's numbers; of size 0: all are zero
+    real(wp), intent(in) :: moved(3, 0:2)                    !< change of the centre, and derivatives in time
+    real(wp), intent(out) :: slips(3, 0:1)                   !< the changes, in the axes of the surface's link [m/s]
+    real(wp) :: turned(3, 0:2), spins(3, 0:1), twist(6), normals(3, 0:1), rate(3)
+
+    turned = relative%seen(turns)
+    twist = surface_change(contact, numbers)
+    turned(:, 0) = turned(:, 0) - twist(1:3)
+    associate (spin => relative%spin, x => relative%x, h => shape%bending)
+      spins(:, 0) = turned(:, 1) + cross(turned(:, 0), spin(:, 0))
+      spins(:, 1) = turned(:, 2) + cross(turned(:, 1), spin(:, 0)) + cross(turned(:, 0), spin(:, 1))
+      rate = matmul(h, x(:, 1))
+      normals(:, 0) = matmul(h, moved(:, 0))
+      normals(:, 1) = matmul(h, moved(:, 1)) + shape%bent_along(x(:, 1), moved(:, 0))
+      slips(:, 0) = moved(:, 1) - contact%radius*(cross(spins(:, 0), shape%normal) + cross(spin(:, 0), normals(:, 0)))
+      slips(:, 1) = moved(:, 2) - contact%radius*(cross(spins(:, 1), shape%normal) + cross(spin(:, 1), normals(:, 0)) &
+                                                  + cross(spins(:, 0), rate) + cross(spin(:, 0), normals(:, 1)))
+      if (size(numbers) == 0) return
+      slips(:, 0) = slips(:, 0) - numbers(4)*cross(spin(:, 0), shape%normal)
+      slips(:, 1) = slips(:, 1) - numbers(4)*(cross(spin(:, 1), shape%normal) + cross(spin(:, 0), rate))
+    end associate
+  end subroutine vary_slip
 
   !> The motion of the ball's centre as seen from the surface.
   pure subroutine find_relative(contact, plan, state, relative)
@@ -109,6 +163,10 @@ contains
       call point_motion(plan, state, contact%links(2), [0.0_wp, 0.0_wp, 0.0_wp], origin(:, 0), origin(:, 1), origin(:, 2))
       relative%x = relative%seen(c - origin)
       relative%x(:, 0) = relative%x(:, 0) - contact%origin
+    end associate
+    associate (turning => relative%ball_omega - relative%omega)
+      relative%spin(:, 0) = turn_back(relative%r, turning)
+      relative%spin(:, 1) = turn_back(relative%r, relative%ball_alpha - relative%alpha - cross(relative%omega, turning))
     end associate
   end subroutine find_relative
 
@@ -160,7 +218,8 @@ contains
   end subroutine find_moved
 
   !> Find the derivatives of the forces of rigid contacts that are closed, after those of the accelerations with these forces held; these
-  !> accelerations get what the forces add. Fails at a corner of a path, where accelerations jump.
+  !> accelerations get what the forces add. Fails at a corner of a path, where accelerations jump, and where equilibrium does not determine
+  !> forces that matter.
   subroutine find_varied_contacts(model, plan, dynamics, state, work, contact, sensitivity, err)
     type(model_type), intent(in) :: model                         !< the model
     type(plan_type), intent(in) :: plan                           !< its plan
@@ -171,39 +230,142 @@ contains
     type(motion_sensitivity_type), intent(inout) :: sensitivity   !< the derivatives
     type(error_type), allocatable, intent(out) :: err             !< allocated if it failed
     type(contact_rows_type) :: equations
+    type(contact_variation_type), allocatable :: variations(:)
     integer, allocatable :: acting(:)
-    real(wp), allocatable :: changes(:, :, :), a(:, :), forces(:), right(:)
-    integer :: i, j, k, n, p
+    real(wp), allocatable :: a(:, :), x(:), right(:), known(:, :), answer(:)
+    real(wp), allocatable :: lines(:, :)
+    real(wp), allocatable :: moved(:)
+    integer, allocatable :: of_contact(:), along(:), chosen(:)
+    integer :: i, j, k, m, n, p
     logical :: depends
 
     associate (motion => sensitivity%motion, contacts => model%mechanism%contacts)
       acting = pack([(i, i=1, size(contacts))], contact%acts .and. contacts%is_rigid)
       n = size(acting)
-      if (.not. allocated(motion%contact)) allocate (motion%contact(motion%n_parameters, size(contacts)))
+      if (.not. allocated(motion%contact)) allocate (motion%contact(motion%n_parameters, 3*size(contacts)))
       motion%contact = 0.0_wp
       if (n == 0) return
       call find_contact_rows(model%mechanism, acting, plan, dynamics, state, work, .not. plan%driven(plan%independent), &
                              equations, err)
       if (.not. allocated(err)) call sensitivity%complete(model, state, err)
       if (allocated(err)) return
-      allocate (changes(motion%n_parameters, 0:2, n), forces(n))
+      allocate (variations(n), known(3, n), lines(3, 3*n), of_contact(3*n), along(3*n))
       do k = 1, n
         call check_path(contacts(acting(k)), equations%places(k)%part, state%t, err)
         if (allocated(err)) return
-        call vary_gap(model, motion, acting(k), changes(:, :, k))
+        call vary_contact(model, motion, acting(k), variations(k))
       end do
-      a = matmul(transpose(equations%rows(:, 1, :)), equations%answers(:, 1, :))
+      call find_lines(contacts(acting), contact%sticks(acting), contact%forces(:, acting), m, of_contact, along, lines)
+      ! no coordinate moves a planar mechanism out of its plane
+      moved = [(dot_product(equations%rows(:, along(j), of_contact(j)), equations%answers(:, along(j), of_contact(j))), j=1, m)]
+      chosen = pack([(j, j=1, m)], moved > least_mobility*maxval(moved))
+      m = size(chosen)
+      of_contact(:m) = of_contact(chosen)
+      along(:m) = along(chosen)
+      lines(:, :m) = lines(:, chosen)
+      allocate (a(m, m), x(m), right(m))
+      do j = 1, m
+        answer = matmul(equations%answers(:, :, of_contact(j)), lines(:, j))
+        do i = 1, m
+          a(i, j) = dot_product(equations%rows(:, along(i), of_contact(i)), answer)
+        end do
+      end do
       do p = 1, motion%n_parameters
-        right = -changes(p, 2, :)
-        call solve_least(a, right, spread(1.0_wp, 1, n), forces, depends)
-        motion%contact(p, acting) = forces
-        do i = 1, size(plan%free)
-          j = findloc(equations%moving, plan%free_places(i), dim=1)
-          sensitivity%values(p, i, 2) = sensitivity%values(p, i, 2) + dot_product(equations%answers(j, 1, :), forces)
+        answer = 0.0_wp*equations%answers(:, 1, 1)
+        do k = 1, n
+          known(:, k) = turned_friction(contacts(acting(k)), contact%sticks(acting(k)), contact%forces(:, acting(k)), &
+                                        equations, k, variations(k), p)
+          answer = answer + matmul(equations%answers(:, :, k), known(:, k))
+        end do
+        do j = 1, m
+          associate (varied => variations(of_contact(j)), axes => equations%axes(:, :, of_contact(j)))
+            if (along(j) == 1) then
+              right(j) = -varied%gaps(p, 2)
+            else
+              right(j) = -dot_product(axes(:, along(j)), varied%slips(p, :, 1))
+            end if
+            right(j) = right(j) - dot_product(equations%rows(:, along(j), of_contact(j)), answer)
+          end associate
+        end do
+        call solve_least(a, right, spread(1.0_wp, 1, m), x, depends)
+        if (depends .and. (model%request%output%with_forces() .or. any(contacts(acting)%static_friction > 0.0_wp))) then
+          call refuse(contacts(acting(1)), failure_shared_contact, state%t, err)
+          return
+        end if
+        do j = 1, m
+          known(:, of_contact(j)) = known(:, of_contact(j)) + x(j)*lines(:, j)
+        end do
+        do k = 1, n
+          motion%contact(p, 3*acting(k) - 2:3*acting(k)) = matmul(equations%axes(:, :, k), known(:, k))
+          do i = 1, size(plan%free)
+            j = findloc(equations%moving, plan%free_places(i), dim=1)
+            sensitivity%values(p, i, 2) = sensitivity%values(p, i, 2) + dot_product(equations%answers(j, :, k), known(:, k))
+          end do
         end do
       end do
     end associate
   end subroutine find_varied_contacts
+
+  !> The unknown forces of closed contacts, along normal and tangents: one of each that slides, with its friction, and three of each that
+  !> sticks.
+  pure subroutine find_lines(contacts, sticks, forces, m, of_contact, along, lines)
+    type(contact_type), intent(in) :: contacts(:)     !< the contacts
+    logical, intent(in) :: sticks(:)                  !< each is held by friction
+    real(wp), intent(in) :: forces(:, :)              !< (3,contacts) along normal and tangents [N]
+    integer, intent(out) :: m                         !< how many unknowns there are
+    integer, intent(out) :: of_contact(:)             !< the contact of each
+    integer, intent(out) :: along(:)                  !< axis along which it leaves no acceleration
+    real(wp), intent(out) :: lines(:, :)              !< (3,unknowns) forces per unit of it
+    integer :: i, c
+
+    m = 0
+    lines = 0.0_wp
+    do i = 1, size(contacts)
+      do c = 1, merge(3, 1, sticks(i))
+        m = m + 1
+        of_contact(m) = i
+        along(m) = c
+        lines(c, m) = 1.0_wp
+      end do
+      if (.not. sticks(i)) lines(2:3, m) = contacts(i)%sliding_friction*direction_of(forces(2:3, i))
+    end do
+  end subroutine find_lines
+
+  !> The direction of a force.
+  pure function direction_of(force) result(direction)
+    real(wp), intent(in) :: force(2)   !< along both tangents [N]
+    real(wp) :: direction(2)
+
+    direction = 0.0_wp
+    if (norm2(force) > 0.0_wp) direction = force/norm2(force)
+  end function direction_of
+
+  !> What the friction of a contact that slides changes under a normal force that is held, along normal and tangents: by its coefficient, and
+  !> by the direction of the slip.
+  pure function turned_friction(contact, sticks, force, equations, k, varied, p) result(change)
+    type(contact_type), intent(in) :: contact                !< the contact
+    logical, intent(in) :: sticks                            !< friction holds it
+    real(wp), intent(in) :: force(3)                         !< its force, along normal and tangents [N]
+    type(contact_rows_type), intent(in) :: equations         !< equations of the contacts
+    integer, intent(in) :: k                                 !< its place among them
+    type(contact_variation_type), intent(in) :: varied       !< its derivatives
+    integer, intent(in) :: p                                 !< number of the parameter
+    real(wp) :: change(3), direction(2), slip(2), aside(2), turning
+
+    change = 0.0_wp
+    if (sticks .or. .not. contact%has_friction()) return
+    direction = -direction_of(force(2:3))
+    change(2:3) = -varied%sliding(p)*force(1)*direction
+    associate (axes => equations%axes(:, :, k), place => equations%places(k))
+      slip = matmul(place%slip, axes(:, 2:3))
+      aside = [-direction(2), direction(1)]
+      turning = dot_product(varied%turns(p, :), axes(:, 1))
+      ! a slip that errors of integration have left has no direction of its own
+      if (norm2(slip) > slip_of_errors*place%speed) &
+        turning = turning + dot_product(aside, matmul(varied%slips(p, :, 0), axes(:, 2:3)))/norm2(slip)
+      change(2:3) = change(2:3) - contact%sliding_friction*force(1)*turning*aside
+    end associate
+  end function turned_friction
 
   !> Fail where a closed contact may pass a corner or an end of its path: accelerations jump there.
   subroutine check_path(contact, part, t, err)
@@ -214,10 +376,19 @@ contains
 
     if (.not. allocated(contact%profile)) return
     if (size(contact%profile%pieces) == 1 .and. part > 0) return
-    ! no shorter step makes the path smooth: the failure is none that the integrator tries again
-    call raise(err, exit_data, failure_cornered_contact)
+    call refuse(contact, failure_cornered_contact, t, err)
+  end subroutine check_path
+
+  !> Fail because of a closed contact. No shorter step helps: the failure is none after which the integrator tries again.
+  subroutine refuse(contact, kind, t, err)
+    type(contact_type), intent(in) :: contact           !< the contact
+    integer, intent(in) :: kind                         !< of the failure
+    real(wp), intent(in) :: t                           !< time [s]
+    type(error_type), allocatable, intent(out) :: err   !< the failure
+
+    call raise(err, exit_data, kind)
     err%failure%t = t
     err%failure%number = contact%number
     err%place = contact%place
-  end subroutine check_path
+  end subroutine refuse
 end module mech9_varied_contacts
