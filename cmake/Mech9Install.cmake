@@ -48,7 +48,7 @@ foreach(program mech9k mech9d)
       DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" RENAME ${program} COMPONENT programs)
   endif()
 endforeach()
-install(FILES "${MECH9_PROGRAMS_DIR}/memory_guard.f90" "${MECH9_PROGRAMS_DIR}/mech9_auto.f90"
+install(FILES "${MECH9_PROGRAMS_DIR}/memory_guard.f90" "${MECH9_PROGRAMS_DIR}/mech9_auto.f90" "${MECH9_PROGRAMS_DIR}/mech9_special.f90"
   DESTINATION "${MECH9_INSTALL_PROGRAMS}" COMPONENT development)
 install(TARGETS mech9 EXPORT mech9Targets DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT development)
 # .smod: users' submodules need those of their hooks

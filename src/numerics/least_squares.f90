@@ -47,6 +47,7 @@ module mech9_least_squares
   contains
     procedure :: create
     procedure :: factorize
+    procedure :: take_inverse
     procedure :: solve
     procedure :: solve_transposed
     procedure :: rank
@@ -109,6 +110,23 @@ contains
       call find_factors(self)
     end if
   end subroutine factorize
+
+  !> Take a regular matrix of three rows and columns whose inverse has been found, and stands in `inverse` already.
+  pure subroutine take_inverse(self, matrix, pivots, sign_of_det)
+    class(least_squares_type), intent(inout) :: self   !< gets the matrix
+    real(wp), intent(in) :: matrix(3, 3)               !< the matrix
+    real(wp), intent(in) :: pivots(3)                  !< its pivots, not increasing and clearly above zero
+    integer, intent(in) :: sign_of_det                 !< sign of its determinant: -1 or 1
+
+    call copy(9, matrix, self%a)
+    self%lengths(1) = pivots(1)
+    self%lengths(2) = pivots(2)
+    self%lengths(3) = pivots(3)
+    self%sign_of_det = sign_of_det
+    self%by_cofactors = .true.
+    self%by_fronts = .false.
+    self%safe_rank = 3
+  end subroutine take_inverse
 
   !> The QR factorization of the matrix that stands in `a`.
   subroutine find_factors(self)

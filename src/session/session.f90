@@ -31,6 +31,7 @@ module mech9_session
   use mech9_choice_check, only: judge_choice_of
   use mech9_unused_options, only: print_unused_options
   use mech9_overwriting, only: refuse_overwriting
+  use mech9_made_check, only: refuse_other_mechanism
   implicit none
   private
   public :: carry_out, run_file, asks_for_text
@@ -134,6 +135,7 @@ contains
     else
       legible = .not. diagnostics%failed()
       call read_model(document, task%program, model, diagnostics)
+      if (.not. diagnostics%failed()) call refuse_other_mechanism(document, diagnostics)
       if (.not. diagnostics%failed()) then
         if (.not. options%has('quiet')) call print_unused_options(error_unit, options, model)
         call refuse_overwriting(options, inputs, err, model%request%output, model%request%section)

@@ -37,6 +37,8 @@ module mech9_block_solver
     real(wp), allocatable :: right(:)          !< (equations) right-hand sides
     real(wp), allocatable :: change(:)         !< (unknowns) solution, in units of the coordinates
     logical :: factors_stay = .false.          !< the Jacobian is constant and has been factorized
+    integer :: made = 0                        !< number of the block among those for which code was made; 0: none was
+    real(wp), allocatable :: numbers(:)        !< numbers of the plan for this code, see mech9_made_motion
     type(work_count_type) :: count             !< operations done for the block
   end type block_work_type
 

@@ -17,6 +17,7 @@ module mech9_branch_stepping
   use mech9_state, only: state_type
   use mech9_block_solver, only: block_work_type, new_block_work, newton_outcome_type, close_block, &
     solve_rates, solve_motion
+  use mech9_made_motion, only: take_made_blocks, move_as_made
   use mech9_predictor, only: predictor_type, new_predictor, begin_prediction, add_position, prepare_prediction, predict, &
     set_accelerations
   use mech9_singularity_monitor, only: singularity_monitor_type, new_singularity_monitor, monitor_step, accept_jacobians, &
@@ -84,6 +85,7 @@ contains
       stepper%work(b) = new_block_work(plan%blocks(b), plan)
       stepper%monitors(b) = new_singularity_monitor(plan%blocks(b))
     end do
+    call take_made_blocks(plan, stepper%work)
     allocate (stepper%per_unit(m))
     stepper%per_unit = 1.0_wp/plan%unit_of
     stepper%drives = drives_of_chains(drives, plan)
@@ -233,6 +235,7 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if a pair has no pose
     type(newton_outcome_type) :: newton
     real(wp) :: unchanged
+    logical :: is_moved
     integer :: b
 
     refused_by = 0
@@ -245,9 +248,16 @@ contains
     do b = 1, min(size(plan%blocks), stepper%last_block)
       refused_by = b
       associate (block => plan%blocks(b), work => stepper%work(b))
-        call predict(block, stepper%predictor, stepper%state)
-        ! Newton's method goes on to round-off, because beside a singular position a small residual means a large error
-        call close_block(plan, block, stepper%state, work, newton, err, 1)
+        is_moved = .false.
+        if (work%made > 0) then
+          call predict(block, stepper%predictor, stepper%state)
+          call move_as_made(plan, block, complete, stepper%state, work, newton, is_moved)
+        end if
+        if (.not. is_moved) then
+          call predict(block, stepper%predictor, stepper%state)
+          ! Newton's method goes on to round-off, because beside a singular position a small residual means a large error
+          call close_block(plan, block, stepper%state, work, newton, err, 1)
+        end if
         stepper%iterations = stepper%iterations + newton%iterations
         stepper%correction = max(stepper%correction, newton%correction)
         ! a pair may have no pose at the end of a step that is too long
@@ -256,7 +266,9 @@ contains
         if (size(block%unknowns) > 0) &
           call monitor_step(plan, block, stepper%state, newton%last <= unchanged, work, stepper%monitors(b), worst)
         if (worst > 1.0_wp) return
-        if (complete) then
+        if (is_moved) then
+          continue
+        else if (complete) then
           call solve_motion(plan, block, stepper%state, work)
         else
           call solve_rates(plan, block, stepper%state, work, without_accelerations=.true.)
