@@ -73,7 +73,7 @@ contains
     from%direction = crossing
     from%tangent = crossing(from%place)
     call add_direction(known(i), crossing)
-    call trace_both(curve, from, branching, known(i)%doublings, settings, branch, known)
+    call trace_both(curve, from, branching, (known(i)%doublings), settings, branch, known)
     branch%from = i
     branches = [branches, branch]
   end subroutine follow_crossing
@@ -124,7 +124,7 @@ contains
     from = known(i)%point
     call first_direction(from, directions)
     if (directions /= 1) return
-    call trace_both(curve, from, period_doubling, known(i)%doublings, settings, branch, known)
+    call trace_both(curve, from, period_doubling, (known(i)%doublings), settings, branch, known)
     branch%from = i
     branches = [branches, branch]
   end subroutine follow_single
