@@ -14,6 +14,8 @@ module mech9_value_passing
   real(wp), parameter :: looks_within(3) = [0.29_wp, 0.53_wp, 0.81_wp]
   integer, parameter :: deepest = 8
   real(wp), parameter :: even = 1.0e-6_wp
+  !> The shortest interval that is divided, in parts of the whole time. At a corner of a path round-off decides between two forces.
+  real(wp), parameter :: shortest_interval = 1.0e-8_wp
   !> Halvings on the way back to the start of a step, where a pair began to slip or to stick.
   integer, parameter :: most_halvings = 30
 
@@ -28,7 +30,7 @@ contains
     real(wp), intent(out) :: t                              !< the time [s]
     logical, intent(out) :: passed                          !< it lies within the step
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    real(wp) :: first, last, before, size_of_value
+    real(wp) :: first, last, before, size_of_value, shortest
 
     passed = .false.
     t = motion%t
@@ -37,6 +39,9 @@ contains
     if (allocated(err)) return
     size_of_value = 1.0_wp
     if (what == of_contact) size_of_value = size_of_force(motion, i, max(abs(first), abs(last)))
+    associate (time => motion%system%model%request%time)
+      shortest = shortest_interval*abs(time%end - time%start)
+    end associate
     before = from
     call look_within(from, first, motion%t, last, 0)
     if (.not. passed .or. allocated(err)) return
@@ -64,7 +69,7 @@ contains
       end do
       k = min(k, 3)
       if (values(k) <= 0.0_wp .and. depth < deepest .and. max(maxval(values), value_a, value_b) + 4.0_wp*deviation > 0.0_wp .and. &
-          deviation > even*size_of_value) then
+          deviation > even*size_of_value .and. abs(b - a) > shortest) then
         call look_within(a, value_a, times(1), values(1), depth + 1)
         if (.not. (passed .or. allocated(err))) call look_within(times(1), values(1), times(2), values(2), depth + 1)
         if (.not. (passed .or. allocated(err))) call look_within(times(2), values(2), times(3), values(3), depth + 1)
