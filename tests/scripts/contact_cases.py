@@ -11,6 +11,18 @@ SLIDING_POINT = """&structure cq=1 /
 &contact point='P' /
 &time end=1, intervals=10 /
 """
+# A block that friction holds on two feet: three coordinates, four forces.
+TWO_FEET = """&structure cq=1,2,3 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&pair coordinate=2, links=2,3, kind='prismatic', axis=0,0,1 /
+&pair coordinate=3, links=3,4, kind='revolute', axis=0,1,0 /
+&initial coordinate=1, position=0 / &initial coordinate=2, position=0 / &initial coordinate=3, position=0 /
+&body link=4, mass=1, inertia=1,1,1,0,0,0 / &gravity acceleration=0,0,-9.81 /
+&point name='P', link=4, position=0.5,0,0 / &point name='Q', link=4, position=-0.5,0,0 /
+&contact point='P', friction=0.5 / &contact point='Q', friction=0.5 /
+&parameter name='m', sets='body(1).mass' / &output sensitivities=.true. /
+&time end=1, intervals=10 /
+"""
 SUNK_POINT = SLIDING_POINT.replace('position=1,', 'position=-0.25,')
 DRIVEN_POINT = """&structure cq=1 /
 &pair coordinate=1, links=1,2, kind='prismatic', axis=0,0,1 /
