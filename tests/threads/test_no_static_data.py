@@ -9,7 +9,7 @@ from mech9_cases import TREE, run
 
 FLOORS = 'base numerics spatial structure model sampling user kinematics ode dynamics simulation analyses wording runs studies input output/layout facade'.split()
 SOURCES = os.path.join(TREE, 'src')
-RUN_ONCE = ('data_help.f90', 'auto_files.f90')    # a program's --help, and the program of mech9-link --auto, use them alone
+RUN_ONCE = ('data_help.f90', 'auto_files.f90', 'made_code.f90')    # a program's --help, and programs of mech9-link, use them alone
 
 # The compiler's own; and constants of MPI, common blocks that SUNDIALS 7 of Debian hands on with its communicator.
 CONSTANT = re.compile(r'^jumptable\.|^A\.\d|___def_init_|^(print_warning|is_recursive)\.|^mpi_fortran_\w+_$')

@@ -209,9 +209,9 @@ module mech9_run_explanations
                   'prince-dormand, of order 8, and those of bdf while very stiff springs or dampers would hold them down.', &
                   'bdf'), &
     explanation_type('solver', 'accuracy', '', &
-                  'At each result, no coordinate and no point may be wrong by more than this, in rad and in m. The program '// &
-                  'runs the motion several times, finds the tolerances by which this is so, and tells the error of each '// &
-                  'result in the column error. 0 leaves all to the tolerances.', '1e-8'), &
+                  'At each result, no coordinate and no point may be wrong by more than this, in units of the file. The '// &
+                  'program runs the motion several times, finds the tolerances by which this is so, and tells the error of '// &
+                  'each result in the column error. 0 leaves all to the tolerances.', '1e-8'), &
     explanation_type('solver', 'relative_tolerance', '', &
                   'In each step the error may be this part of the coordinates and of their rates. A smaller number is '// &
                   'more accurate and takes longer.', '1e-10'), &

@@ -317,7 +317,7 @@ contains
     is_of_others = .false.
     select case (trim(row%group)//'.'//row%name)
     case ('stop.stiffness', 'stop.damping', 'contact.stiffness', 'contact.damping', 'coupling.constant', 'solver.accuracy', &
-          'solver.absolute_tolerance', 'limit.low', 'limit.high', 'objective.goal', 'objective.weight')
+          'limit.low', 'limit.high', 'objective.goal', 'objective.weight')
       is_of_others = .true.
     case ('section.value')
       is_of_others = draft%has('section', place, 'column')

@@ -340,8 +340,8 @@ contains
     if (norm2(force) > 0.0_wp) direction = force/norm2(force)
   end function direction_of
 
-  !> What the friction of a contact that slides changes under a normal force that is held, along normal and tangents: by its coefficient, and
-  !> by the direction of the slip.
+  !> The change of the friction of a contact that slides, under a normal force that is held, along normal and tangents: by its coefficient,
+  !> and by the direction of the slip.
   pure function turned_friction(contact, sticks, force, equations, k, varied, p) result(change)
     type(contact_type), intent(in) :: contact                !< the contact
     logical, intent(in) :: sticks                            !< friction holds it
