@@ -14,7 +14,7 @@ module mech9_value_passing
   real(wp), parameter :: looks_within(3) = [0.29_wp, 0.53_wp, 0.81_wp]
   integer, parameter :: deepest = 8
   real(wp), parameter :: even = 1.0e-6_wp
-  !> The shortest interval that is divided, in parts of the whole time. At a corner of a path round-off decides between two forces.
+  !> The shortest interval that is looked into, in parts of the whole time. At a corner of a path round-off decides between two forces.
   real(wp), parameter :: shortest_interval = 1.0e-8_wp
   !> Halvings on the way back to the start of a step, where a pair began to slip or to stick.
   integer, parameter :: most_halvings = 30
@@ -43,7 +43,11 @@ contains
       shortest = shortest_interval*abs(time%end - time%start)
     end associate
     before = from
-    call look_within(from, first, motion%t, last, 0)
+    if (abs(motion%t - from) > shortest) then
+      call look_within(from, first, motion%t, last, 0)
+    else
+      passed = last > 0.0_wp
+    end if
     if (.not. passed .or. allocated(err)) return
     call find_before(motion, what, i, from, before, t, err)
     if (.not. allocated(err)) call locate(motion, what, i, before, t, passed, err)
