@@ -120,7 +120,7 @@ contains
     !> The same from plain arrays.
     pure subroutine set_each(bodies, r, omega, alpha, a, applied, resisting)
       type(rigid_body_type), intent(in) :: bodies(m)                    !< those of each frame
-      real(wp), intent(in) :: r(3, 3, 0:*)                              !< rotation of each frame
+      real(wp), intent(in) :: r(3, 3, 0:*)                              !< (3,3,0:M) rotation of each frame, to fixed axes [1]
       real(wp), intent(in) :: omega(3, 0:*)                             !< angular velocity of each frame, fixed axes [rad/s]
       real(wp), intent(in) :: alpha(3, 0:*)                             !< angular acceleration that rates alone give [rad/s^2]
       real(wp), intent(in) :: a(3, 0:*)                                 !< acceleration of each origin that rates alone give [m/s^2]
@@ -235,8 +235,8 @@ contains
     pure subroutine eliminate(steps, p, axis_w, axis_v, bodies, eliminated, found)
       type(chain_step_type), intent(in) :: steps(*)                  !< the steps of the plan
       real(wp), intent(in) :: p(3, 0:*)                              !< origin of each frame [m]
-      real(wp), intent(in) :: axis_w(3, *)                           !< angular velocity that each step gives per unit rate
-      real(wp), intent(in) :: axis_v(3, *)                           !< velocity of the new origin per unit rate
+      real(wp), intent(in) :: axis_w(3, *)                           !< (3,M) angular velocity that each step gives per unit rate, fixed axes [1, rad/m]
+      real(wp), intent(in) :: axis_v(3, *)                           !< (3,M) velocity of the new origin per unit rate, fixed axes [m/rad, 1]
       type(articulated_body_type), intent(inout) :: bodies(0:*)      !< each frame's own bodies; then with all links beyond it
       type(eliminated_step_type), intent(inout) :: eliminated(*)     !< gets the steps of the run
       logical, intent(out) :: found                                  !< whether all coordinates of the run have inertia
@@ -333,10 +333,10 @@ contains
     !> The same from plain arrays.
     pure subroutine move(p, axis_w, axis_v, eliminated, motion, accelerations)
       real(wp), intent(in) :: p(3, 0:*)                           !< origin of each frame [m]
-      real(wp), intent(in) :: axis_w(3, *)                        !< angular velocity that each step gives per unit rate
-      real(wp), intent(in) :: axis_v(3, *)                        !< velocity of the new origin per unit rate
+      real(wp), intent(in) :: axis_w(3, *)                        !< (3,M) angular velocity that each step gives per unit rate, fixed axes [1, rad/m]
+      real(wp), intent(in) :: axis_v(3, *)                        !< (3,M) velocity of the new origin per unit rate, fixed axes [m/rad, 1]
       type(eliminated_step_type), intent(in) :: eliminated(*)     !< the steps
-      real(wp), intent(inout) :: motion(6, 0:*)                   !< less the part by rates alone; zero for frame 0
+      real(wp), intent(inout) :: motion(6, 0:*)                   !< (6,0:M) accelerations less the part by rates alone, fixed axes; 0 for frame 0 [rad/s^2, m/s^2]
       real(wp), intent(inout) :: accelerations(*)                 !< of the independent coordinates [rad/s^2, m/s^2]
       real(wp) :: dw(3), dv(3), x
       integer :: s
@@ -377,7 +377,7 @@ contains
     integer, intent(in) :: last                     !< last step of the run
     type(chain_step_type), intent(in) :: steps(*)   !< (M) the steps of the plan
     real(wp), intent(in) :: p(3, 0:*)               !< origin of each frame [m]
-    real(wp), intent(inout) :: motion(6, 0:*)       !< gets accelerations less those that rates and drives give
+    real(wp), intent(inout) :: motion(6, 0:*)       !< (6,0:M) gets accelerations less those that rates and drives give, fixed axes [rad/s^2, m/s^2]
     integer :: s
 
     do s = first, last

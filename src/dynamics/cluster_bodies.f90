@@ -61,8 +61,8 @@ contains
   pure subroutine add_frames(stage, entries, w, v, p, bodies, cluster)
     type(stage_type), intent(in) :: stage                       !< the cluster; nothing passes to frame 0
     type(frame_entries_type), intent(in) :: entries             !< of all frames
-    real(wp), intent(in) :: w(3, *)                             !< (entries) angular velocity per unit rate, relative to the base
-    real(wp), intent(in) :: v(3, *)                             !< (entries) velocity of the origin per unit rate, likewise
+    real(wp), intent(in) :: w(3, *)                             !< (3,entries) angular velocity per unit rate, relative to the base, fixed axes [1, rad/m]
+    real(wp), intent(in) :: v(3, *)                             !< (3,entries) velocity of the origin per unit rate, relative to the same frame, fixed axes [m/rad, 1]
     real(wp), intent(in) :: p(3, 0:*)                           !< origin of each frame [m]
     type(articulated_body_type), intent(inout) :: bodies(0:*)   !< each frame with all links beyond it outside the cluster
     type(cluster_work_type), intent(inout) :: cluster           !< A, U, Q - S^T p and the bound of A grow
@@ -78,10 +78,10 @@ contains
       integer, intent(in) :: first(0:*)                           !< first entry of each frame
       integer, intent(in) :: local(*)                             !< (entries) place of the coordinate in the cluster
       type(articulated_body_type), intent(inout) :: bodies(0:*)   !< each frame with all links beyond it outside the cluster
-      real(wp), intent(inout) :: factors(n, *)                    !< A, lower triangle
-      real(wp), intent(inout) :: column(6, *)                     !< U
-      real(wp), intent(inout) :: rest(*)                          !< Q - S^T p
-      real(wp), intent(inout) :: rigid(*)                         !< bound of the diagonal of A, if all links beyond were rigid
+      real(wp), intent(inout) :: factors(n, *)                    !< (n,n) A, lower triangle [kg m^2, kg m, kg]
+      real(wp), intent(inout) :: column(6, *)                     !< (6,n) U, fixed axes [kg m^2, kg m, kg]
+      real(wp), intent(inout) :: rest(*)                          !< (n) Q - S^T p [N m, N]
+      real(wp), intent(inout) :: rigid(*)                         !< (n) bound of the diagonal of A, if all links beyond were rigid [kg m^2, kg]
       real(wp) :: torque(3), force(3), arm(3)
       integer :: base, i, f, e, d, j
 
@@ -125,8 +125,8 @@ contains
   !> Take from the base of a cluster what the cluster's own motion gives way.
   pure subroutine pass_to_base(n, column, rest, body)
     integer, intent(in) :: n                             !< number of independent coordinates of the cluster
-    real(wp), intent(in) :: column(6, n)                 !< Y
-    real(wp), intent(in) :: rest(n)                      !< z
+    real(wp), intent(in) :: column(6, n)                 !< (dimensions,n) Y, by which accelerations of the base act [1, rad/m, m/rad]
+    real(wp), intent(in) :: rest(n)                      !< (n) z, accelerations where the base has none [rad/s^2, m/s^2]
     type(articulated_body_type), intent(inout) :: body   !< the base with all links beyond it
     integer :: i, j
 
@@ -158,10 +158,10 @@ contains
 
     !> The same from plain arrays.
     pure subroutine divide(factors, column, rest, rigid, found)
-      real(wp), intent(inout) :: factors(n, n)             !< A in, L out, lower triangle
-      real(wp), intent(inout) :: column(dimensions, n)     !< U in, Y out
-      real(wp), intent(inout) :: rest(n)                   !< Q - S^T p in, z out
-      real(wp), intent(inout) :: rigid(n)                  !< bound of A_jj as if rigid in, least pivots that count out
+      real(wp), intent(inout) :: factors(n, n)             !< (n,n) A in [kg m^2, kg m, kg], its Cholesky factor L out, lower triangle
+      real(wp), intent(inout) :: column(dimensions, n)     !< (dimensions,n) U in [kg m^2, kg m, kg], Y out
+      real(wp), intent(inout) :: rest(n)                   !< (n) Q - S^T p in [N m, N], z out
+      real(wp), intent(inout) :: rigid(n)                  !< (n) bound of A_jj as if rigid in, least pivots that count out [kg m^2, kg]
       logical, intent(out) :: found                        !< whether A is positive definite
       integer :: failed_at, j, k
 
@@ -191,7 +191,7 @@ contains
     integer, intent(in), contiguous :: places(:)        !< (n) places of the coordinates among all independent ones
     real(wp), intent(in), contiguous :: motion(:)       !< (6, in a plane 3) accelerations of the base less those by rates alone
     type(cluster_work_type), intent(inout) :: cluster   !< with L, Y, z; gets `ddq`
-    real(wp), intent(inout) :: accelerations(*)         !< of all independent coordinates; gets those of the cluster
+    real(wp), intent(inout) :: accelerations(*)         !< (independent) accelerations of all independent coordinates; gets those of the cluster [rad/s^2, m/s^2]
     integer :: n, dimensions
 
     n = size(places)
@@ -202,11 +202,11 @@ contains
 
     !> The same from plain arrays.
     pure subroutine divide(factors, column, rest, ddq, accelerations)
-      real(wp), intent(in) :: factors(n, n)             !< L, lower triangle
-      real(wp), intent(in) :: column(dimensions, n)     !< Y
-      real(wp), intent(in) :: rest(n)                   !< z
+      real(wp), intent(in) :: factors(n, n)             !< (n,n) Cholesky factor L of A, lower triangle
+      real(wp), intent(in) :: column(dimensions, n)     !< (dimensions,n) Y, by which accelerations of the base act [1, rad/m, m/rad]
+      real(wp), intent(in) :: rest(n)                   !< (n) z, accelerations where the base has none [rad/s^2, m/s^2]
       real(wp), intent(out) :: ddq(n)                   !< accelerations [rad/s^2, m/s^2]
-      real(wp), intent(inout) :: accelerations(*)       !< of all independent coordinates
+      real(wp), intent(inout) :: accelerations(*)       !< (independent) accelerations of all independent coordinates [rad/s^2, m/s^2]
       integer :: i, j
 
       do j = n, 1, -1
@@ -227,11 +227,11 @@ contains
   pure subroutine move_cluster(stage, entries, w, v, p, ddq, motion)
     type(stage_type), intent(in) :: stage             !< the cluster
     type(frame_entries_type), intent(in) :: entries   !< of all frames
-    real(wp), intent(in) :: w(3, *)                   !< (entries) angular velocity per unit rate, relative to the base
-    real(wp), intent(in) :: v(3, *)                   !< (entries) velocity of the origin per unit rate, likewise
+    real(wp), intent(in) :: w(3, *)                   !< (3,entries) angular velocity per unit rate, relative to the base, fixed axes [1, rad/m]
+    real(wp), intent(in) :: v(3, *)                   !< (3,entries) velocity of the origin per unit rate, relative to the same frame, fixed axes [m/rad, 1]
     real(wp), intent(in) :: p(3, 0:*)                 !< origin of each frame [m]
     real(wp), intent(in) :: ddq(*)                    !< accelerations of the cluster's independent coordinates [rad/s^2, m/s^2]
-    real(wp), intent(inout) :: motion(6, 0:*)   !< accelerations less those that rates alone give; gets those of these frames
+    real(wp), intent(inout) :: motion(6, 0:*)   !< (6,0:M) accelerations less those that rates alone give, fixed axes; gets those of these frames [rad/s^2, m/s^2]
     real(wp) :: dw(3), dv(3)
     integer :: i, f, e
 

@@ -38,7 +38,7 @@ contains
 
   !> The motion of a plane in its own axes, from that of its base in fixed axes.
   pure function seen_motion(axes, omega, alpha, a, gravity) result(plane)
-    real(wp), intent(in) :: axes(3, 3)   !< axes of the plane, in fixed axes
+    real(wp), intent(in) :: axes(3, 3)   !< (3,3) axes of the plane, as columns in fixed axes [1]
     real(wp), intent(in) :: omega(3)     !< angular velocity of its base, fixed axes [rad/s]
     real(wp), intent(in) :: alpha(3)     !< angular acceleration of the base that rates alone give, fixed axes [rad/s^2]
     real(wp), intent(in) :: a(3)         !< acceleration of the plane's origin that rates alone give, fixed axes [m/s^2]
@@ -74,10 +74,10 @@ contains
     pure subroutine gather_each(first, local, factors, column, rest, rigid, all)
       integer, intent(in) :: first(0:*)                !< first entry of each frame
       integer, intent(in) :: local(*)                  !< (entries) place of the coordinate in the cluster
-      real(wp), intent(inout) :: factors(n, n)         !< A, lower triangle
-      real(wp), intent(inout) :: column(6, n)          !< U
-      real(wp), intent(inout) :: rest(n)               !< Q - S^T p
-      real(wp), intent(inout) :: rigid(n)              !< bound of the diagonal of A, as if rigid
+      real(wp), intent(inout) :: factors(n, n)         !< (n,n) A, lower triangle [kg m^2, kg m, kg]
+      real(wp), intent(inout) :: column(6, n)          !< (6,n) U, the plane's axes [kg m^2, kg m, kg]
+      real(wp), intent(inout) :: rest(n)               !< (n) Q - S^T p [N m, N]
+      real(wp), intent(inout) :: rigid(n)              !< (n) bound of the diagonal of A, as if rigid [kg m^2, kg]
       type(carried_bodies_type), intent(inout) :: all  !< the bodies grow
       type(carried_bodies_type) :: carried
       type(articulated_plate_type) :: plate
@@ -111,9 +111,9 @@ contains
   !> Add the inertia and the wrench of the bodies to those of the base, in fixed axes.
   pure subroutine pass_to_base(n, axes, all, column, base)
     integer, intent(in) :: n                             !< number of independent coordinates of the cluster
-    real(wp), intent(in) :: axes(3, 3)                   !< axes of the plane, in fixed axes
+    real(wp), intent(in) :: axes(3, 3)                   !< (3,3) axes of the plane, as columns in fixed axes [1]
     type(carried_bodies_type), intent(in) :: all         !< the bodies about the base's origin, in the plane's axes
-    real(wp), intent(inout) :: column(6, n)              !< U in the plane's axes in, in fixed axes out
+    real(wp), intent(inout) :: column(6, n)              !< (6,n) U in the plane's axes in, in fixed axes out [kg m^2, kg m, kg]
     type(articulated_body_type), intent(inout) :: base   !< the base with links beyond it, fixed axes
     type(articulated_body_type) :: rigid
     integer :: c

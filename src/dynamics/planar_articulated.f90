@@ -158,7 +158,7 @@ contains
     pure subroutine eliminate(steps, f, slide, plates, eliminated, found)
       type(planar_step_type), intent(in) :: steps(*)                 !< the steps of the plan
       real(wp), intent(in) :: f(4, 0:*)                              !< pose of each frame: cosine, sine, origin [m]
-      real(wp), intent(in) :: slide(2, *)                            !< velocity of each new origin per unit rate
+      real(wp), intent(in) :: slide(2, *)                            !< (2,M) velocity of each new origin per unit rate, the plane's axes [m/rad, 1]
       type(articulated_plate_type), intent(inout) :: plates(0:*)     !< each frame's own bodies; then with all links beyond it
       type(eliminated_step_type), intent(inout) :: eliminated(*)     !< gets the steps of the run
       logical, intent(out) :: found                                  !< whether all coordinates of the run have inertia
@@ -241,9 +241,9 @@ contains
     !> The same from plain arrays.
     pure subroutine move(f, slide, eliminated, motion, accelerations)
       real(wp), intent(in) :: f(4, 0:*)                          !< pose of each frame: cosine, sine, origin [m]
-      real(wp), intent(in) :: slide(2, *)                        !< velocity of each new origin per unit rate
+      real(wp), intent(in) :: slide(2, *)                        !< (2,M) velocity of each new origin per unit rate, the plane's axes [m/rad, 1]
       type(eliminated_step_type), intent(in) :: eliminated(*)    !< the steps
-      real(wp), intent(inout) :: motion(3, 0:*)                  !< less the part by rates alone; zero for frame 0
+      real(wp), intent(inout) :: motion(3, 0:*)                  !< (3,0:M) accelerations less the part by rates alone, the plane's axes; 0 for frame 0 [rad/s^2, m/s^2]
       real(wp), intent(inout) :: accelerations(*)                !< of the independent coordinates [rad/s^2, m/s^2]
       real(wp) :: x, d(3)
       integer :: i, p
@@ -290,7 +290,7 @@ contains
     integer, intent(in) :: last                      !< last step of the run
     type(planar_step_type), intent(in) :: steps(*)   !< (M) the steps of the plan
     real(wp), intent(in) :: f(4, 0:*)                !< pose of each frame: cosine, sine, origin [m]
-    real(wp), intent(inout) :: motion(3, 0:*)        !< gets accelerations less those that rates and drives give
+    real(wp), intent(inout) :: motion(3, 0:*)        !< (3,0:M) gets accelerations less those that rates and drives give, the plane's axes [rad/s^2, m/s^2]
     integer :: i, p
 
     do i = first, last

@@ -140,7 +140,7 @@ contains
     type(planar_step_type), intent(in) :: steps(*)              !< the steps of the plan
     type(planar_motion_type), intent(in) :: motion              !< with the poses of the frames
     real(wp), intent(in) :: length                              !< the mechanism's size [m]
-    real(wp), intent(inout), contiguous :: matrix(:, :)         !< gets rows in rad or parts of length, per rad or per length
+    real(wp), intent(inout), contiguous :: matrix(:, :)         !< (rows,columns) gets rows in rad or parts of length, per rad or per length [1]
     integer :: rows, columns
 
     rows = size(matrix, 1)
@@ -152,8 +152,8 @@ contains
     !> The same from plain arrays.
     pure subroutine fill(f, slide, matrix)
       real(wp), intent(in) :: f(4, 0:*)                !< pose of each frame, in the plane's axes [m]
-      real(wp), intent(in) :: slide(2, *)              !< velocity of each new origin per unit rate, in the plane's axes
-      real(wp), intent(inout) :: matrix(rows, columns) !< the columns
+      real(wp), intent(in) :: slide(2, *)              !< (2,M) velocity of each new origin per unit rate, in the plane's axes [m/rad, 1]
+      real(wp), intent(inout) :: matrix(rows, columns) !< (rows,columns) the columns, in rad or parts of length, per rad or per length [1]
       real(wp) :: per_length
       integer :: i, s, row
 
@@ -175,7 +175,7 @@ contains
     real(wp), intent(in) :: f(4, 0:*)                     !< (4,0:M) pose of each frame, in the plane's axes [m]
     real(wp), intent(in) :: columns(3, *)                 !< (entries) angular velocity and velocity of the origin per unit rate
     real(wp), intent(in) :: length                        !< the mechanism's size [m]
-    real(wp), intent(inout), contiguous :: matrix(:, :)   !< rows in rad or parts of length, columns per rad or per length
+    real(wp), intent(inout), contiguous :: matrix(:, :)   !< (rows,columns) rows in rad or parts of length, columns per rad or per length [1]
     real(wp) :: per_length
     integer :: i, row
 
@@ -192,7 +192,7 @@ contains
     type(loop_part_type), intent(in) :: part   !< the frame in the loop
     real(wp), intent(in) :: per_length         !< one over the mechanism's size [1/m]
     real(wp), intent(in) :: arm(2)             !< from the frame's origin to that of the closure's base [m]
-    real(wp), intent(in) :: column(3)          !< angular velocity and velocity of the origin per unit rate, plane's axes
+    real(wp), intent(in) :: column(3)          !< (3,entries) angular velocity and velocity of the origin per unit rate, plane's axes [1, m/rad]
     real(wp), intent(inout) :: rows(3)         !< of the closure, in rad or parts of length, per rad or per length
 
     rows(1) = rows(1) + part%weight*column(1)
@@ -205,7 +205,7 @@ contains
     type(planar_block_type), intent(in) :: flat     !< the loops of the block
     integer, intent(in) :: j                        !< place of the independent coordinate among those of the block
     integer, intent(in), contiguous :: coordinates(:)   !< numbers of the unknowns
-    real(wp), intent(in), contiguous :: change(:)   !< change of the closures' equations per unit of it, solved for the unknowns
+    real(wp), intent(in), contiguous :: change(:)   !< (unknowns) change of the closures' equations per unit of it, solved for the unknowns [1]
     real(wp), intent(inout) :: b(*)                 !< (entries) gets B, rates of steps per unit rate of independent coordinates
     real(wp), intent(inout) :: dq(*)                !< (M) rates of all coordinates [rad/s, m/s]
     real(wp) :: rate, unit
@@ -235,7 +235,7 @@ contains
     !> The same from plain arrays.
     pure subroutine move(f, slide, v, a)
       real(wp), intent(in) :: f(4, 0:*)      !< pose of each frame, in the plane's axes [m]
-      real(wp), intent(in) :: slide(2, *)    !< velocity of each new origin per unit rate, in the plane's axes
+      real(wp), intent(in) :: slide(2, *)    !< (2,M) velocity of each new origin per unit rate, in the plane's axes [m/rad, 1]
       real(wp), intent(inout) :: v(3, 0:*)   !< velocities of the frames, in the plane's axes [rad/s, m/s]
       real(wp), intent(inout) :: a(3, 0:*)   !< accelerations of the frames, in the plane's axes [rad/s^2, m/s^2]
       real(wp) :: arm(2), rate
@@ -268,7 +268,7 @@ contains
   !> of the independent coordinates. The right-hand sides stay in registers.
   pure subroutine find_chain_rates(flat, inverse, steps, motion, jacobian, dq)
     type(planar_block_type), intent(in) :: flat      !< the loop
-    real(wp), intent(in) :: inverse(3, 3)            !< inverse of the Jacobian
+    real(wp), intent(in) :: inverse(3, 3)            !< (3,3) inverse of the Jacobian, of unknowns per rad and per length [1]
     type(planar_step_type), intent(in) :: steps(*)   !< the steps of the plan
     type(planar_motion_type), intent(in) :: motion   !< with the poses of the frames
     type(jacobian_type), intent(inout) :: jacobian   !< with the columns of earlier blocks; gets B
@@ -281,9 +281,9 @@ contains
     !> The same from plain arrays.
     pure subroutine find(f, slide, columns, b, dq)
       real(wp), intent(in) :: f(4, 0:*)        !< pose of each frame, in the plane's axes [m]
-      real(wp), intent(in) :: slide(2, *)      !< velocity of each new origin per unit rate, in the plane's axes
-      real(wp), intent(in) :: columns(3, *)    !< of the frames of earlier blocks, in the plane's axes
-      real(wp), intent(inout) :: b(*)          !< gets B, rate of the coordinate per unit rate of an independent one
+      real(wp), intent(in) :: slide(2, *)      !< (2,M) velocity of each new origin per unit rate, in the plane's axes [m/rad, 1]
+      real(wp), intent(in) :: columns(3, *)    !< (3,entries) of the frames of earlier blocks, in the plane's axes [1, m/rad]
+      real(wp), intent(inout) :: b(*)          !< (entries) gets B, rate of the coordinate per unit rate of an independent one [1, rad/m, m/rad]
       real(wp), intent(inout) :: dq(*)         !< rates of all coordinates; gets those of the three [rad/s, m/s]
       real(wp) :: side(3), rate
       integer :: i, j, e
@@ -312,7 +312,7 @@ contains
     real(wp), intent(in) :: f(4, 0:*)                !< (4,0:M) pose of each frame, in the plane's axes [m]
     real(wp), intent(in) :: slide(2, *)              !< (2,M) velocity of each new origin per unit rate, in the plane's axes
     real(wp), intent(in) :: columns(3, *)            !< (entries) of the frames of earlier blocks, in the plane's axes
-    real(wp), intent(out) :: side(3)                 !< rows in rad or parts of length, per rad or per length
+    real(wp), intent(out) :: side(3)                 !< (3) rows in rad or parts of length, per rad or per length [1]
     real(wp) :: column(3)
     integer :: i, s
 
@@ -351,9 +351,9 @@ contains
     pure subroutine move(parent_entry, f, slide, b, columns, v, bias)
       integer, intent(in) :: parent_entry(*)      !< (entries) the same column in the parent frame, 0 for none
       real(wp), intent(in) :: f(4, 0:*)           !< pose of each frame, in the plane's axes [m]
-      real(wp), intent(in) :: slide(2, *)         !< velocity of each new origin per unit rate, in the plane's axes
-      real(wp), intent(in) :: b(*)                !< B, rate of the step's coordinate per unit rate of an independent one
-      real(wp), intent(inout) :: columns(3, *)    !< angular velocity and velocity of the origin per unit rate, plane's axes
+      real(wp), intent(in) :: slide(2, *)         !< (2,M) velocity of each new origin per unit rate, in the plane's axes [m/rad, 1]
+      real(wp), intent(in) :: b(*)                !< (entries) B, rate of the step's coordinate per unit rate of an independent one [1, rad/m, m/rad]
+      real(wp), intent(inout) :: columns(3, *)    !< (3,entries) angular velocity and velocity of the origin per unit rate, plane's axes [1, m/rad]
       real(wp), intent(inout) :: v(3, 0:*)        !< velocities of the frames, in the plane's axes [rad/s, m/s]
       real(wp), intent(out) :: bias(2)            !< bias acceleration of the loop [m/s^2]
       real(wp) :: arm(2), carried(3), rate

@@ -17,7 +17,7 @@ contains
   pure subroutine eliminate_cluster(stage, entries, s, f, plates, cluster, found)
     type(stage_type), intent(in) :: stage                        !< the cluster; nothing passes to frame 0
     type(frame_entries_type), intent(in) :: entries              !< of all frames
-    real(wp), intent(in) :: s(3, *)                              !< (entries) columns of the frames, relative to the base
+    real(wp), intent(in) :: s(3, *)                              !< (3,entries) columns of the frames, relative to the base, the plane's axes [1, m/rad]
     real(wp), intent(in) :: f(4, 0:*)                            !< pose of each frame: cosine, sine, origin [m]
     type(articulated_plate_type), intent(inout) :: plates(0:*)   !< each frame with all links beyond it outside the cluster
     type(cluster_work_type), intent(inout) :: cluster            !< with Q in `rest`; gets L, Y, z
@@ -36,10 +36,10 @@ contains
       integer, intent(in) :: first(0:*)                            !< first entry of each frame
       integer, intent(in) :: local(*)                              !< (entries) place of the coordinate in the cluster
       type(articulated_plate_type), intent(inout) :: plates(0:*)   !< each frame with all links beyond it outside the cluster
-      real(wp), intent(out) :: factors(n, n)                       !< A, lower triangle
-      real(wp), intent(out) :: column(3, n)                        !< U
-      real(wp), intent(inout) :: rest(n)                           !< Q in, Q - S^T p out
-      real(wp), intent(out) :: rigid(n)                            !< bound of the diagonal of A, if all links beyond were rigid
+      real(wp), intent(out) :: factors(n, n)                       !< (n,n) A, lower triangle [kg m^2, kg m, kg]
+      real(wp), intent(out) :: column(3, n)                        !< (3,n) U, the plane's axes [kg m^2, kg m, kg]
+      real(wp), intent(inout) :: rest(n)                           !< (n) Q in, Q - S^T p out [N m, N]
+      real(wp), intent(out) :: rigid(n)                            !< (n) bound of the diagonal of A, if all links beyond were rigid [kg m^2, kg]
       real(wp) :: arm(2), u(3)
       integer :: base, i, k, e, j
 
@@ -63,8 +63,8 @@ contains
   !> Take from the base of a cluster what the cluster's own motion gives way.
   pure subroutine pass_to_base(n, column, rest, plate)
     integer, intent(in) :: n                               !< number of independent coordinates of the cluster
-    real(wp), intent(in) :: column(3, n)                   !< Y
-    real(wp), intent(in) :: rest(n)                        !< z
+    real(wp), intent(in) :: column(3, n)                   !< (3,n) Y, by which accelerations of the base act [1, rad/m, m/rad]
+    real(wp), intent(in) :: rest(n)                        !< (n) z, accelerations where the base has none [rad/s^2, m/s^2]
     type(articulated_plate_type), intent(inout) :: plate   !< the base with all links beyond it
     integer :: j
 
@@ -79,13 +79,13 @@ contains
 
   !> Add what a frame contributes to U, Q - S^T p and the bound for one coordinate of its cluster.
   pure subroutine add_column(s, plate, arm, u, column, rest, rigid)
-    real(wp), intent(in) :: s(3)                        !< column of the frame, relative to the base
+    real(wp), intent(in) :: s(3)                        !< (3) column of the frame, relative to the base, the plane's axes [1, m/rad]
     type(articulated_plate_type), intent(in) :: plate   !< the frame with all links beyond it outside the cluster
     real(wp), intent(in) :: arm(2)                      !< from the base's origin to the frame's [m]
-    real(wp), intent(out) :: u(3)                       !< wrench on the frame per unit acceleration of the coordinate
-    real(wp), intent(inout) :: column(3)                !< U of the coordinate
-    real(wp), intent(inout) :: rest                     !< Q - S^T p of the coordinate
-    real(wp), intent(inout) :: rigid                    !< bound of A_jj as if rigid
+    real(wp), intent(out) :: u(3)                       !< (3) wrench on the frame per unit acceleration of the coordinate, the plane's axes [kg m^2, kg m]
+    real(wp), intent(inout) :: column(3)                !< (3) U of the coordinate, the plane's axes [kg m^2, kg m]
+    real(wp), intent(inout) :: rest                     !< Q - S^T p of the coordinate [N m, N]
+    real(wp), intent(inout) :: rigid                    !< bound of A_jj as if rigid [kg m^2, kg]
 
     u(1) = plate%inertia(1)*s(1) + plate%inertia(2)*s(2) + plate%inertia(3)*s(3)
     u(2) = plate%inertia(2)*s(1) + plate%inertia(4)*s(2) + plate%inertia(5)*s(3)
@@ -103,9 +103,9 @@ contains
   pure subroutine add_products(count, local, s, u, factors)
     integer, intent(in) :: count             !< number of these entries
     integer, intent(in) :: local(count)      !< places of their coordinates in the cluster
-    real(wp), intent(in) :: s(3, count)      !< their columns, relative to the base
-    real(wp), intent(in) :: u(3)             !< wrench on the frame per unit acceleration of the coordinate
-    real(wp), intent(inout) :: factors(*)    !< column of A
+    real(wp), intent(in) :: s(3, count)      !< (3,count) their columns, relative to the base, the plane's axes [1, m/rad]
+    real(wp), intent(in) :: u(3)             !< (3) wrench on the frame per unit acceleration of the coordinate, the plane's axes [kg m^2, kg m]
+    real(wp), intent(inout) :: factors(*)    !< (count) column of A [kg m^2, kg m, kg]
     integer :: d
 
     do d = 1, count
@@ -117,10 +117,10 @@ contains
   pure subroutine move_cluster(stage, entries, s, f, ddq, motion)
     type(stage_type), intent(in) :: stage             !< the cluster
     type(frame_entries_type), intent(in) :: entries   !< of all frames
-    real(wp), intent(in) :: s(3, *)                   !< (entries) columns of the frames, relative to the base
+    real(wp), intent(in) :: s(3, *)                   !< (3,entries) columns of the frames, relative to the base, the plane's axes [1, m/rad]
     real(wp), intent(in) :: f(4, 0:*)                 !< pose of each frame: cosine, sine, origin [m]
     real(wp), intent(in) :: ddq(*)                    !< accelerations of the cluster's independent coordinates [rad/s^2, m/s^2]
-    real(wp), intent(inout) :: motion(3, 0:*)   !< accelerations less those that rates alone give; gets those of these frames
+    real(wp), intent(inout) :: motion(3, 0:*)   !< (3,0:M) accelerations less those that rates alone give, the plane's axes; gets those of these frames [rad/s^2, m/s^2]
     real(wp) :: d(3)
     integer :: i, k, e
 

@@ -35,9 +35,9 @@ contains
     !> The same from plain arrays.
     pure subroutine spread(f, slide, b, columns)
       real(wp), intent(in) :: f(4, 0:*)            !< pose of each frame: cosine, sine, origin [m]
-      real(wp), intent(in) :: slide(2, *)          !< velocity of each new origin per unit rate
-      real(wp), intent(in) :: b(*)                 !< B, rate of the step's coordinate per unit rate of an independent one
-      real(wp), intent(inout) :: columns(3, *)     !< gets the columns of these frames
+      real(wp), intent(in) :: slide(2, *)          !< (2,M) velocity of each new origin per unit rate, the plane's axes [m/rad, 1]
+      real(wp), intent(in) :: b(*)                 !< (entries) B, rate of the step's coordinate per unit rate of an independent one [1, rad/m, m/rad]
+      real(wp), intent(inout) :: columns(3, *)     !< (3,entries) gets the columns of these frames, the plane's axes [1, m/rad]
       real(wp) :: arm(2), carried(3)
       integer :: s, e
 
@@ -73,9 +73,9 @@ contains
     pure subroutine add_each(first, numbers, columns, coefficients, velocity_terms, forces)
       integer, intent(in) :: first(0:*)                  !< first entry of each frame
       integer, intent(in) :: numbers(*)                  !< place of each entry's coordinate among the independent ones
-      real(wp), intent(in) :: columns(3, *)              !< columns of all frames
-      real(wp), intent(inout) :: coefficients(n, *)      !< a_pr, lower triangle
-      real(wp), intent(inout) :: velocity_terms(*)       !< h_p
+      real(wp), intent(in) :: columns(3, *)              !< (3,entries) columns of all frames, the plane's axes [1, m/rad]
+      real(wp), intent(inout) :: coefficients(n, *)      !< (n,n) a_pr, lower triangle [kg m^2, kg m, kg]
+      real(wp), intent(inout) :: velocity_terms(*)       !< (n) h_p [N m, N]
       real(wp), intent(inout) :: forces(*)               !< Q_p [N m or N]
       real(wp) :: x, y, force_x, force_y, torque, c_x, c_y, spin
       integer :: i, s, e, d, p, r

@@ -30,11 +30,11 @@ contains
     pure subroutine spread(steps, p, axis_w, axis_v, b, w, v)
       type(step_type), intent(in) :: steps(*)   !< the steps of the plan
       real(wp), intent(in) :: p(3, 0:*)         !< origin of each frame [m]
-      real(wp), intent(in) :: axis_w(3, *)      !< angular velocity that each step gives per unit rate
-      real(wp), intent(in) :: axis_v(3, *)      !< velocity of the new origin per unit rate
-      real(wp), intent(in) :: b(*)              !< B, rate of the step's coordinate per unit rate of an independent one
-      real(wp), intent(inout) :: w(3, *)        !< gets the angular velocities per unit rate of an independent coordinate
-      real(wp), intent(inout) :: v(3, *)        !< gets the velocities of the origins per unit rate of an independent coordinate
+      real(wp), intent(in) :: axis_w(3, *)      !< (3,M) angular velocity that each step gives per unit rate, fixed axes [1, rad/m]
+      real(wp), intent(in) :: axis_v(3, *)      !< (3,M) velocity of the new origin per unit rate, fixed axes [m/rad, 1]
+      real(wp), intent(in) :: b(*)              !< (entries) B, rate of the step's coordinate per unit rate of an independent one [1, rad/m, m/rad]
+      real(wp), intent(inout) :: w(3, *)        !< (3,entries) gets the angular velocities per unit rate of an independent coordinate, fixed axes [1, rad/m]
+      real(wp), intent(inout) :: v(3, *)        !< (3,entries) gets the velocities of the origins per unit rate of an independent coordinate, fixed axes [m/rad, 1]
       real(wp) :: x, y, z
       integer :: s, e, k
 

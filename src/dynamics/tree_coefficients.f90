@@ -42,8 +42,8 @@ contains
     integer, intent(in) :: place                         !< place of the coordinate among the independent ones
     integer, intent(in) :: reach(2)                      !< first and last frame within its reach
     type(frame_entries_type), intent(in) :: entries      !< of all frames
-    real(wp), intent(in) :: w(3, *)                      !< (entries) angular velocity per unit rate, relative to the support
-    real(wp), intent(in) :: v(3, *)                      !< (entries) velocity of the origin per unit rate, likewise
+    real(wp), intent(in) :: w(3, *)                      !< (3,entries) angular velocity per unit rate, relative to the support, fixed axes [1, rad/m]
+    real(wp), intent(in) :: v(3, *)                      !< (3,entries) velocity of the origin per unit rate, relative to the support, fixed axes [m/rad, 1]
     real(wp), intent(in) :: p(3, 0:*)                    !< origin of each frame [m]
     type(articulated_work_type), intent(inout) :: work   !< with zero motion of all frames before these; gets motion and wrenches
 
@@ -57,7 +57,7 @@ contains
       integer, intent(in) :: column(*)                            !< (entries) place of the coordinate among the independent ones
       integer, intent(in) :: support(*)                           !< frame on which the cluster of each step stands
       type(articulated_body_type), intent(inout) :: bodies(0:*)   !< each frame's own bodies; gets the wrenches
-      real(wp), intent(inout) :: motion(6, 0:*)                   !< gets the accelerations of these frames
+      real(wp), intent(inout) :: motion(6, 0:*)                   !< (dimensions,0:M) gets the accelerations of these frames [rad/s^2, m/s^2]
       real(wp) :: dw(3), dv(3)
       integer :: s, e
 
@@ -83,8 +83,8 @@ contains
   pure subroutine collect_in_space(reach, entries, w, v, p, bodies, values)
     integer, intent(in) :: reach(2)                             !< first and last of these frames; no other frame stands on them
     type(frame_entries_type), intent(in) :: entries             !< of all frames
-    real(wp), intent(in) :: w(3, *)                             !< (entries) angular velocity per unit rate, relative to the support
-    real(wp), intent(in) :: v(3, *)                             !< (entries) velocity of the origin per unit rate, likewise
+    real(wp), intent(in) :: w(3, *)                             !< (3,entries) angular velocity per unit rate, relative to the support, fixed axes [1, rad/m]
+    real(wp), intent(in) :: v(3, *)                             !< (3,entries) velocity of the origin per unit rate, relative to the support, fixed axes [m/rad, 1]
     real(wp), intent(in) :: p(3, 0:*)                           !< origin of each frame [m]
     type(articulated_body_type), intent(inout) :: bodies(0:*)   !< with wrenches on the frames; then on all links beyond, too
     real(wp), intent(out), contiguous :: values(:)              !< generalized forces on the independent coordinates [N m or N]
@@ -101,7 +101,7 @@ contains
       integer, intent(in) :: column(*)                            !< (entries) place of the coordinate among the independent ones
       integer, intent(in) :: support(*)                           !< frame on which the cluster of each step stands
       type(articulated_body_type), intent(inout) :: bodies(0:*)   !< with wrenches on the frames
-      real(wp), intent(inout) :: values(*)                        !< get their generalized forces
+      real(wp), intent(inout) :: values(*)                        !< (n) get their generalized forces [N m, N]
       integer :: s, e, f
 
       ! frames on which these stand have no wrenches of their own; link 1 keeps its wrench, which nothing reads
@@ -145,7 +145,7 @@ contains
       integer, intent(in) :: column(*)                             !< (entries) place of the coordinate among the independent ones
       integer, intent(in) :: support(*)                            !< frame on which the cluster of each step stands
       type(articulated_plate_type), intent(inout) :: plates(0:*)   !< each frame's own bodies; gets the wrenches
-      real(wp), intent(inout) :: motion(3, 0:*)                    !< gets the accelerations of these frames
+      real(wp), intent(inout) :: motion(3, 0:*)                    !< (dimensions,0:M) gets the accelerations of these frames [rad/s^2, m/s^2]
       real(wp) :: d(3)
       integer :: s, e, k
 
@@ -188,7 +188,7 @@ contains
       integer, intent(in) :: column(*)                             !< (entries) place of the coordinate among the independent ones
       integer, intent(in) :: support(*)                            !< frame on which the cluster of each step stands
       type(articulated_plate_type), intent(inout) :: plates(0:*)   !< with wrenches on the frames
-      real(wp), intent(inout) :: values(*)                         !< get their generalized forces
+      real(wp), intent(inout) :: values(*)                         !< (n) get their generalized forces [N m, N]
       integer :: s, e, k
 
       ! frames on which these stand have no wrenches of their own; link 1 keeps its wrench, which nothing reads

@@ -66,7 +66,7 @@ contains
 
   !> A number as an operand.
   pure function literal(number) result(operand)
-    real(wp), intent(in) :: number   !< the number
+    real(wp), intent(in) :: number   !< number of any unit, of which code is written
     character(len=term_length) :: operand
 
     if (.not. abs(number) > 0.0_wp) then

@@ -114,8 +114,8 @@ contains
   !> Take a regular matrix of three rows and columns whose inverse has been found, and stands in `inverse` already.
   pure subroutine take_inverse(self, matrix, pivots, sign_of_det)
     class(least_squares_type), intent(inout) :: self   !< gets the matrix
-    real(wp), intent(in) :: matrix(3, 3)               !< the matrix
-    real(wp), intent(in) :: pivots(3)                  !< its pivots, not increasing and clearly above zero
+    real(wp), intent(in) :: matrix(3, 3)               !< (3,3) the matrix
+    real(wp), intent(in) :: pivots(3)                  !< (3) its pivots, not increasing and clearly above zero
     integer, intent(in) :: sign_of_det                 !< sign of its determinant: -1 or 1
 
     call copy(9, matrix, self%a)

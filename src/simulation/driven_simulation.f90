@@ -171,7 +171,7 @@ contains
     class(driven_simulation_type), intent(in) :: self      !< the simulation
     real(wp), intent(in) :: from                           !< start of the way [s]
     real(wp), intent(in) :: t                              !< the time [s]
-    real(wp), intent(in) :: longest                        !< longest way, in the units of the coordinates
+    real(wp), intent(in) :: longest                        !< longest way [rad, m]
     type(repetition_type) :: repetition
     real(wp) :: h, joint
     integer :: halving, i

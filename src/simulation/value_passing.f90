@@ -55,9 +55,9 @@ contains
     !> Look for the first time between two ones at which the value is above zero.
     recursive subroutine look_within(a, value_a, b, value_b, depth)
       real(wp), intent(in) :: a         !< the first time [s]
-      real(wp), intent(in) :: value_a   !< there
+      real(wp), intent(in) :: value_a   !< the value there, in parts of a bound or as a force [1, N, N m]
       real(wp), intent(in) :: b         !< the second time [s]
-      real(wp), intent(in) :: value_b   !< there
+      real(wp), intent(in) :: value_b   !< the value there, in parts of a bound or as a force [1, N, N m]
       integer, intent(in) :: depth      !< halvings so far
       real(wp) :: times(3), values(3), deviation
       integer :: k

@@ -22,7 +22,7 @@ module mech9_made_blocks
     pure module subroutine describe_made_plan(structure, places, values)
       integer, allocatable, intent(out) :: structure(:)   !< the structure of the plan, and the blocks
       integer, allocatable, intent(out) :: places(:)      !< of constants among the numbers of the plan
-      real(wp), allocatable, intent(out) :: values(:)     !< of these constants
+      real(wp), allocatable, intent(out) :: values(:)     !< (constants) values of these constants, SI units
     end subroutine describe_made_plan
 
     !> Close the chain of a block from a guess of its coordinates, and find its rates, accelerations, and the motion of its frames.
@@ -34,12 +34,12 @@ module mech9_made_blocks
       real(wp), intent(inout) :: dq(*)                  !< rates, the given ones in [rad/s, m/s]
       real(wp), intent(inout) :: ddq(*)                 !< accelerations, the given ones in [rad/s^2, m/s^2]
       real(wp), intent(inout) :: f(4, 0:*)              !< (cosine, sine, x, y) pose of each frame [m]
-      real(wp), intent(inout) :: slide(2, *)            !< velocity of each frame's origin per unit rate
-      real(wp), intent(inout) :: turn(2, *)             !< cosine and sine of the angle by which each step turns
+      real(wp), intent(inout) :: slide(2, *)            !< (2,M) velocity of each frame's origin per unit rate, the plane's axes [m/rad, 1]
+      real(wp), intent(inout) :: turn(2, *)             !< (2,M) cosine and sine of the angle by which each step turns [1]
       real(wp), intent(inout) :: v(3, 0:*)              !< velocity of each frame [rad/s, m/s]
       real(wp), intent(inout) :: a(3, 0:*)              !< acceleration of each frame [rad/s^2, m/s^2]
-      real(wp), intent(inout) :: jacobian(3, 3)         !< derivatives of the three equations, at the closed position
-      real(wp), intent(inout) :: inverse(3, 3)          !< its inverse
+      real(wp), intent(inout) :: jacobian(3, 3)         !< (3,3) derivatives of the three equations by the unknowns, at the closed position [1, m, m/rad]
+      real(wp), intent(inout) :: inverse(3, 3)          !< (3,3) its inverse
       type(made_course_type), intent(out) :: course     !< the course of Newton's method
       logical, intent(out) :: is_solved                 !< else anything may have changed, and the general code is to begin anew
     end subroutine move_made_block

@@ -128,7 +128,7 @@ contains
 
   !> Convert the numbers of a list.
   pure subroutine convert_list(factors, text, is_known)
-    real(wp), intent(in) :: factors(:)                       !< factors of the numbers in turn, the last one of all further ones
+    real(wp), intent(in) :: factors(:)                       !< (n) factors of the numbers in turn, the last one of all further ones [1]
     character(len=:), allocatable, intent(inout) :: text     !< the numbers; become the converted ones
     logical, intent(out) :: is_known                         !< they are plain numbers
     character(len=:), allocatable :: new, word

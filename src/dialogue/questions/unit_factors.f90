@@ -26,7 +26,7 @@ contains
 
   !> Whether a factor changes nothing beyond round-off.
   elemental logical function is_same(factor)
-    real(wp), intent(in) :: factor   !< the factor
+    real(wp), intent(in) :: factor   !< factor of the number, of other over present units [1]
 
     is_same = abs(factor - 1.0_wp) <= 4.0_wp*epsilon(1.0_wp)
   end function is_same
@@ -38,7 +38,7 @@ contains
     character(len=*), intent(in) :: name                 !< name of the answer, without subscript
     type(units_type), intent(in) :: before               !< units in which the numbers are
     type(units_type), intent(in) :: after                !< units in which they are to be
-    real(wp), allocatable, intent(out) :: factors(:)     !< the factors
+    real(wp), allocatable, intent(out) :: factors(:)     !< (numbers) factors of the numbers, of other over present units [1]
     logical, intent(out) :: is_known                     !< they are known
     character(len=unit_length), allocatable :: list(:)
     character(len=:), allocatable :: group, over
@@ -84,7 +84,7 @@ contains
     character(len=*), intent(in) :: name                 !< name of the answer
     type(units_type), intent(in) :: before               !< units in which the numbers are
     type(units_type), intent(in) :: after                !< units in which they are to be
-    real(wp), allocatable, intent(inout) :: factors(:)   !< those of a law of time; become those of the law
+    real(wp), allocatable, intent(inout) :: factors(:)   !< (numbers) factors of a law of time; become those of the law [1]
     logical, intent(out) :: is_known                     !< they are known
     character(len=unit_length) :: unit
     real(wp) :: factor, of_law
@@ -144,7 +144,7 @@ contains
     character(len=*), intent(in) :: sets                 !< names of the numbers, as the data file writes them; none: the unit is 1
     type(units_type), intent(in) :: before               !< units in which the numbers are
     type(units_type), intent(in) :: after                !< units in which they are to be
-    real(wp), intent(out) :: factor                      !< the factor
+    real(wp), intent(out) :: factor                      !< factor of the number, of other over present units [1]
     logical, intent(out) :: is_known                     !< it is known
     character(len=len(sets)), allocatable :: words(:)
     real(wp) :: other
@@ -198,7 +198,7 @@ contains
     character(len=*), intent(in) :: name                 !< the name
     type(units_type), intent(in) :: before               !< units in which the numbers are
     type(units_type), intent(in) :: after                !< units in which they are to be
-    real(wp), intent(out) :: factor                      !< the factor
+    real(wp), intent(out) :: factor                      !< factor of the number, of other over present units [1]
     logical, intent(out) :: is_known                     !< it is known
     real(wp), allocatable :: factors(:)
     character(len=:), allocatable :: group, item, key

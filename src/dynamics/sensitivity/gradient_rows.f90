@@ -59,7 +59,7 @@ contains
   pure subroutine sum_inward(plan, n, sums)
     type(plan_type), intent(in) :: plan                             !< the plan of the mechanism
     integer, intent(in) :: n                                        !< numbers of each frame
-    real(wp), intent(inout) :: sums(n, 0:plan%n_coordinates)        !< of each frame; then of all that follows it, too
+    real(wp), intent(inout) :: sums(n, 0:plan%n_coordinates)        !< (d,0:2,0:M) rows of each frame; then of all that follows it, too, per unit of the motion
     integer :: s, c
 
     do s = plan%n_coordinates, 1, -1
@@ -83,7 +83,7 @@ contains
     type(plan_type), intent(in) :: plan                                 !< the plan of the mechanism
     integer, intent(in) :: d                                            !< numbers of a twist
     integer, intent(in) :: order                                        !< of the rows
-    real(wp), intent(inout) :: rows(d, 0:2, 0:plan%n_coordinates)       !< of each frame; then of all that follows it, too
+    real(wp), intent(inout) :: rows(d, 0:2, 0:plan%n_coordinates)       !< (d,0:2,0:M) rows of each frame; then of all that follows it, too, per unit of the motion
     integer :: s, c
 
     do s = plan%n_coordinates, 1, -1
@@ -99,9 +99,9 @@ contains
   pure real(wp) function row_of_coordinate(d, order, twist, rows, direct) result(row)
     integer, intent(in) :: d                 !< numbers of a twist
     integer, intent(in) :: order             !< of the derivative of the coordinate in time
-    real(wp), intent(in) :: twist(d, 0:2)    !< of the step per unit rate, with its derivatives in time
-    real(wp), intent(in) :: rows(d, 0:2)     !< by twists from the step on
-    real(wp), intent(in) :: direct(0:2)      !< rows of the coordinate beside its twist
+    real(wp), intent(in) :: twist(d, 0:2)    !< (3,0:2) twist of the step per unit rate, with its derivatives in time [1, m/rad, per s]
+    real(wp), intent(in) :: rows(d, 0:2)     !< (3,0:2) rows by twists from the step on, per rad and per m
+    real(wp), intent(in) :: direct(0:2)      !< (0:2) rows of the coordinate beside its twist, per unit of the coordinate
     integer :: c
 
     row = direct(order)
@@ -124,9 +124,9 @@ contains
   !> The same in a plane, without loops.
   pure real(wp) function row_in_plane(order, twist, rows, direct) result(row)
     integer, intent(in) :: order             !< of the derivative of the coordinate in time
-    real(wp), intent(in) :: twist(3, 0:2)    !< of the step per unit rate, with its derivatives in time
-    real(wp), intent(in) :: rows(3, 0:2)     !< by twists from the step on
-    real(wp), intent(in) :: direct(0:2)      !< rows of the coordinate beside its twist
+    real(wp), intent(in) :: twist(3, 0:2)    !< (3,0:2) twist of the step per unit rate, with its derivatives in time [1, m/rad, per s]
+    real(wp), intent(in) :: rows(3, 0:2)     !< (3,0:2) rows by twists from the step on, per rad and per m
+    real(wp), intent(in) :: direct(0:2)      !< (0:2) rows of the coordinate beside its twist, per unit of the coordinate
 
     select case (order)
     case (0)
@@ -141,8 +141,8 @@ contains
 
   !> The product of three numbers with three others.
   pure real(wp) function product_in_plane(a, b) result(product)
-    real(wp), intent(in) :: a(3)             !< three numbers
-    real(wp), intent(in) :: b(3)             !< the others
+    real(wp), intent(in) :: a(3)             !< (3) three numbers
+    real(wp), intent(in) :: b(3)             !< (3) the other numbers
 
     product = a(1)*b(1) + a(2)*b(2) + a(3)*b(3)
   end function product_in_plane
@@ -185,7 +185,7 @@ contains
     integer, intent(in) :: unknowns(n)              !< their steps
     integer, intent(in) :: coordinates(n)           !< their coordinates
     real(wp), intent(in) :: steps(d, 0:2, m)        !< twists of all steps per unit rate, with derivatives in time
-    real(wp), intent(in) :: frames(d, 0:2, 0:m)     !< rows of the frames
+    real(wp), intent(in) :: frames(d, 0:2, 0:m)     !< (3,0:2,0:M) rows of the frames, per rad and per m
     real(wp), intent(in) :: direct(0:2, m)          !< rows of coordinates beside their twists
     real(wp), intent(inout) :: right(n)             !< the rows
     integer :: u
@@ -240,13 +240,13 @@ contains
     integer, intent(in) :: order                    !< of the rows
     integer, intent(in) :: n                        !< number of equations of the chain
     real(wp), intent(in) :: multipliers(n)          !< of these equations
-    real(wp), intent(in) :: map(d, n)               !< their wrenches
+    real(wp), intent(in) :: map(d, n)               !< (3,3) wrenches of the multipliers
     integer, intent(in) :: n_steps                  !< number of steps of the loop
     integer, intent(in) :: steps(n_steps)           !< steps of the loop
-    real(wp), intent(in) :: signs(n_steps)          !< of these steps
+    real(wp), intent(in) :: signs(n_steps)          !< (n_steps) 1, or -1 where the chain goes against the step
     integer, intent(in) :: m                        !< number of all steps
-    real(wp), intent(inout) :: chain(d, 0:2)        !< gets the wrench of the chain
-    real(wp), intent(inout) :: frames(d, 0:2, 0:m)  !< rows of the frames
+    real(wp), intent(inout) :: chain(d, 0:2)        !< (3,0:2) gets the wrench of the chain, per rad and per m
+    real(wp), intent(inout) :: frames(d, 0:2, 0:m)  !< (3,0:2,0:M) rows of the frames, per rad and per m
     real(wp) :: sum
     integer :: i, j, k
 
@@ -265,14 +265,14 @@ contains
   !> The same for a chain with three equations in a plane.
   pure subroutine hand_on_in_plane(order, multipliers, map, n_steps, steps, signs, m, chain, frames)
     integer, intent(in) :: order                    !< of the rows
-    real(wp), intent(in) :: multipliers(3)          !< of the equations
-    real(wp), intent(in) :: map(3, 3)               !< their wrenches
+    real(wp), intent(in) :: multipliers(3)          !< (3) multipliers of the equations
+    real(wp), intent(in) :: map(3, 3)               !< (3,3) wrenches of the multipliers
     integer, intent(in) :: n_steps                  !< number of steps of the loop
     integer, intent(in) :: steps(n_steps)           !< steps of the loop
-    real(wp), intent(in) :: signs(n_steps)          !< of these steps
+    real(wp), intent(in) :: signs(n_steps)          !< (n_steps) 1, or -1 where the chain goes against the step
     integer, intent(in) :: m                        !< number of all steps
-    real(wp), intent(inout) :: chain(3, 0:2)        !< gets the wrench of the chain
-    real(wp), intent(inout) :: frames(3, 0:2, 0:m)  !< rows of the frames
+    real(wp), intent(inout) :: chain(3, 0:2)        !< (3,0:2) gets the wrench of the chain, per rad and per m
+    real(wp), intent(inout) :: frames(3, 0:2, 0:m)  !< (3,0:2,0:M) rows of the frames, per rad and per m
     real(wp) :: x, y, z
     integer :: i
 

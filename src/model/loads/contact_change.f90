@@ -116,7 +116,7 @@ contains
   !> The twist of the surface in its link by a change of the contact's numbers: its rotation, and the shift of `origin`.
   pure function surface_change(contact, numbers) result(twist)
     type(contact_type), intent(in) :: contact    !< the contact
-    real(wp), intent(in) :: numbers(:)           !< derivatives of its numbers; of size 0: all are zero
+    real(wp), intent(in) :: numbers(:)           !< (numbers) derivatives of its numbers, by one parameter, SI units; of size 0: all are zero
     real(wp) :: twist(6), spin(3, 3)
 
     twist = 0.0_wp
@@ -137,7 +137,7 @@ contains
     type(link_motion_type), intent(in) :: surface             !< motion of the surface's link
     type(link_change_type), intent(in) :: ball_change         !< derivative of the first one
     type(link_change_type), intent(in) :: change_of_surface   !< derivative of the second one
-    real(wp), intent(in) :: numbers(:)                        !< derivatives of the contact's numbers; of size 0: all are zero
+    real(wp), intent(in) :: numbers(:)                        !< (numbers) derivatives of the contact's numbers by one parameter, SI units; of size 0: all are zero
     type(contact_change_type) :: change
     type(gap_shape_type) :: shape
     real(wp), dimension(3) :: arm, w, x, rate, moved, moved_rate, own, centre_rate
@@ -174,7 +174,7 @@ contains
     real(wp), intent(in) :: gap                          !< its gap [m]
     real(wp), intent(in) :: rate                         !< rate of the gap [m/s]
     type(contact_change_type), intent(in) :: change      !< derivatives of both
-    real(wp), intent(in) :: numbers(:)                   !< derivatives of the contact's numbers; of size 0: all are zero
+    real(wp), intent(in) :: numbers(:)                   !< (numbers) derivatives of the contact's numbers by one parameter, SI units; of size 0: all are zero
     real(wp) :: factor, power
 
     force = 0.0_wp

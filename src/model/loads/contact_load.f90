@@ -85,7 +85,7 @@ contains
   !> Its numbers.
   pure subroutine numbers(self, values)
     class(contact_load_type), intent(in) :: self      !< the load
-    real(wp), allocatable, intent(out) :: values(:)   !< the numbers
+    real(wp), allocatable, intent(out) :: values(:)   !< (numbers) the numbers, SI units
 
     values = numbers_of_contact(self%contact)
   end subroutine numbers
@@ -93,8 +93,8 @@ contains
   !> Add the derivative of the force by a parameter on which its numbers depend.
   subroutine vary_by_numbers(self, change, factor, state, changes, err)
     class(contact_load_type), intent(in) :: self        !< the load
-    real(wp), intent(in) :: change(:)                   !< derivatives of the numbers
-    real(wp), intent(in) :: factor                      !< 1, since it has no law
+    real(wp), intent(in) :: change(:)                   !< (numbers) derivatives of the numbers by one parameter, SI units
+    real(wp), intent(in) :: factor                      !< 1, since it has no law [1]
     type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
     type(force_sum_type), intent(inout) :: changes      !< derivatives of forces so far; those of the load are added
     type(error_type), allocatable, intent(out) :: err   !< never allocated
@@ -108,7 +108,7 @@ contains
     type(motion_view_type), intent(in) :: state             !< present motion of links and coordinates
     type(link_change_type), intent(in) :: ball_change       !< change of the motion of the ball's link
     type(link_change_type), intent(in) :: surface_change    !< change of that of the surface's link
-    real(wp), intent(in) :: own(:)                          !< derivatives of the numbers; of size 0: all are zero
+    real(wp), intent(in) :: own(:)                          !< (numbers) derivatives of the numbers by one parameter, SI units; of size 0: all are zero
     type(force_sum_type), intent(inout) :: changes          !< derivatives of forces so far; those of the load are added
     type(contact_place_type) :: place
     type(contact_change_type) :: varied
@@ -160,7 +160,7 @@ contains
     class(contact_load_type), intent(in) :: self     !< the load
     type(motion_view_type), intent(in) :: state      !< present motion of links and coordinates
     type(motion_change_type), intent(in) :: change   !< derivative of the motion by the parameter
-    real(wp), intent(in) :: derivatives(:)           !< derivatives of its numbers; of size 0: all are zero
+    real(wp), intent(in) :: derivatives(:)           !< (numbers) derivatives of its numbers by one parameter, SI units; of size 0: all are zero
     type(contact_place_type) :: place
     type(contact_change_type) :: varied
 

@@ -158,7 +158,7 @@ contains
   !> The derivative of the law by a parameter on which its numbers depend, in the present motion. Fails where it has no value.
   subroutine vary(self, change, state, value, err)
     class(law_over_type), intent(in) :: self            !< the law
-    real(wp), intent(in) :: change(:)                   !< derivatives of its numbers, as of `constants`
+    real(wp), intent(in) :: change(:)                   !< (numbers) derivatives of its numbers by one parameter, as of `constants`
     type(motion_view_type), intent(in) :: state         !< present motion of links and coordinates
     real(wp), intent(out) :: value                      !< derivative of the law
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
@@ -189,7 +189,7 @@ contains
     class(law_over_type), intent(in) :: self       !< the law
     type(motion_view_type), intent(in) :: state    !< present motion of links and coordinates
     real(wp), intent(out) :: x                     !< the variable [unit of the data file]
-    real(wp), intent(out) :: dx                    !< its derivative in time
+    real(wp), intent(out) :: dx                    !< its derivative in time [unit of the variable/s]
     real(wp) :: unused
 
     if (self%link > 0) then
@@ -208,7 +208,7 @@ contains
     type(motion_view_type), intent(in) :: state      !< present motion of links and coordinates
     type(motion_change_type), intent(in) :: change   !< derivative of the motion by the parameter
     real(wp), intent(out) :: x                       !< derivative of the variable [unit of the data file]
-    real(wp), intent(out) :: dx                      !< derivative of its derivative in time
+    real(wp), intent(out) :: dx                      !< derivative of its derivative in time [unit of the variable/s]
     real(wp) :: unused
 
     if (self%link > 0) then
@@ -226,9 +226,9 @@ contains
   pure subroutine change_by_shift(self, state, change, x, dx)
     class(law_over_type), intent(in) :: self         !< the law
     type(motion_view_type), intent(in) :: state      !< present motion of links and coordinates
-    real(wp), intent(in) :: change(:)                !< derivatives of its numbers, as of `constants`
+    real(wp), intent(in) :: change(:)                !< (numbers) derivatives of its numbers by one parameter, as of `constants`
     real(wp), intent(out) :: x                       !< derivative of the variable [unit of the data file]
-    real(wp), intent(out) :: dx                      !< derivative of its derivative in time
+    real(wp), intent(out) :: dx                      !< derivative of its derivative in time [unit of the variable/s]
     real(wp) :: shift(3), unused
 
     x = 0.0_wp
@@ -247,8 +247,8 @@ contains
     real(wp), intent(in) :: velocity(3)           !< in the axes of link 1 [m/s]
     real(wp), intent(in) :: acceleration(3)       !< in the axes of link 1; zero: it is left out [m/s^2]
     real(wp), intent(out) :: x                    !< the variable [unit of the data file]
-    real(wp), intent(out) :: dx                   !< its derivative in time
-    real(wp), intent(out) :: ddx                  !< its second derivative
+    real(wp), intent(out) :: dx                   !< its derivative in time [unit of the variable/s]
+    real(wp), intent(out) :: ddx                  !< its second derivative in time [unit of the variable/s^2]
 
     ddx = 0.0_wp
     if (self%is_rate) then
@@ -268,8 +268,8 @@ contains
     real(wp), intent(in) :: dq(:)              !< (M) their rates
     real(wp), intent(in) :: ddq(:)             !< (M) their accelerations; of size 0: they are left out, and count as zero
     real(wp), intent(out) :: x                 !< the variable [unit of the data file]
-    real(wp), intent(out) :: dx                !< its derivative in time
-    real(wp), intent(out) :: ddx               !< its second derivative
+    real(wp), intent(out) :: dx                !< its derivative in time [unit of the variable/s]
+    real(wp), intent(out) :: ddx               !< its second derivative in time [unit of the variable/s^2]
     real(wp) :: acceleration
 
     acceleration = 0.0_wp

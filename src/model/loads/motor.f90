@@ -207,7 +207,7 @@ contains
     class(motor_type), intent(in) :: self                !< the motor
     type(motor_motion_type), intent(in) :: motion        !< with time and variable
     type(motor_motion_type), intent(in) :: moved         !< derivatives of the variable and of its rate
-    real(wp), intent(in) :: numbers(:)                   !< derivatives of the numbers of the law, those of its point first;
+    real(wp), intent(in) :: numbers(:)                   !< (numbers) derivatives by one parameter of the numbers of the law, those of its point first;
                                                          !< these count in `moved`; of size 0: all are zero
     real(wp), intent(out) :: value                       !< derivative of the law
     real(wp), intent(out) :: rate                        !< derivative of its rate in time
@@ -248,7 +248,7 @@ contains
   pure subroutine add_shift(self, state, numbers, moved)
     class(motor_type), intent(in) :: self              !< the motor
     type(motion_view_type), intent(in) :: state        !< present motion of links and coordinates
-    real(wp), intent(in) :: numbers(:)                 !< derivatives of its numbers, as of `constants`
+    real(wp), intent(in) :: numbers(:)                 !< (numbers) derivatives of its numbers by one parameter, as of `constants`
     type(motor_motion_type), intent(inout) :: moved    !< gets it
     real(wp), allocatable :: own(:)
     real(wp) :: x, dx

@@ -279,7 +279,7 @@ contains
     class(curve_type), intent(inout) :: curve          !< the problem
     type(curve_point_type), intent(in) :: a            !< the point before
     type(curve_point_type), intent(in) :: b            !< the point behind
-    real(wp), intent(in) :: tests(2)                   !< at both points, of different sign
+    real(wp), intent(in) :: tests(2)                   !< (2) values of the test at both points, of different sign
     type(curve_point_type), intent(inout) :: point     !< the guess, with the direction of the branch
     logical, intent(out) :: found                      !< the equations have a value there
     type(error_type), allocatable :: err

@@ -122,9 +122,9 @@ contains
     type(contact_type), intent(in) :: contact                !< the contact
     type(gap_shape_type), intent(in) :: shape                !< its gap near the place
     type(relative_motion_type), intent(in) :: relative       !< the motion
-    real(wp), intent(in) :: turns(3, 0:2)                    !< of the ball's link against the surface's, and derivatives in time, fixed axes
-    real(wp), intent(in) :: numbers(:)                       !< derivatives of the contact's numbers; of size 0: all are zero
-    real(wp), intent(in) :: moved(3, 0:2)                    !< change of the centre, and derivatives in time
+    real(wp), intent(in) :: turns(3, 0:2)                    !< (3,0:2) rotation of the ball's link against the surface's, and derivatives in time, fixed axes [rad, per s]
+    real(wp), intent(in) :: numbers(:)                       !< (numbers) derivatives of the contact's numbers by one parameter, SI units; of size 0: all are zero
+    real(wp), intent(in) :: moved(3, 0:2)                    !< (3,0:2) change of the centre, and derivatives in time, axes of the surface's link [m, per s]
     real(wp), intent(out) :: slips(3, 0:1)                   !< the changes, in the axes of the surface's link [m/s]
     real(wp) :: turned(3, 0:2), spins(3, 0:1), twist(6), normals(3, 0:1), rate(3)
 
@@ -173,7 +173,7 @@ contains
   !> A vector and its derivatives in time, along fixed axes, as seen from the link of the surface.
   pure function seen(self, vector)
     class(relative_motion_type), intent(in) :: self   !< the motion, with the turning of this link
-    real(wp), intent(in) :: vector(3, 0:2)            !< the vector
+    real(wp), intent(in) :: vector(3, 0:2)            !< (3,0:2) a vector and its derivatives in time, fixed axes
     real(wp) :: seen(3, 0:2), carried(3)
 
     carried = cross(self%omega, vector(:, 0))
@@ -188,9 +188,9 @@ contains
     type(contact_type), intent(in) :: contact                !< the contact
     type(plan_type), intent(in) :: plan                      !< the plan
     type(relative_motion_type), intent(in) :: relative       !< the motion
-    real(wp), intent(in) :: twists(6, 0:2)                   !< of the ball's link against the surface's, and derivatives in time
-    real(wp), intent(in) :: numbers(:)                       !< derivatives of the contact's numbers; of size 0: all are zero
-    real(wp), intent(out) :: moved(3, 0:2)                   !< the change and its derivatives in time
+    real(wp), intent(in) :: twists(6, 0:2)                   !< (6,0:2) change of pose of the ball's link against the surface's, and derivatives in time, fixed axes [rad, m, per s]
+    real(wp), intent(in) :: numbers(:)                       !< (numbers) derivatives of the contact's numbers by one parameter, SI units; of size 0: all are zero
+    real(wp), intent(out) :: moved(3, 0:2)                   !< (3,0:2) change of the centre and its derivatives in time, axes of the surface's link [m, per s]
     real(wp) :: e(3, 0:2), own(3), turned(3), twist(6)
     integer :: order
 
