@@ -7,7 +7,8 @@ module mech9_text
   use mech9_kinds, only: wp, long
   implicit none
   private
-  public :: string_type, to_text, exact_digits, some_of, lower, join, texts_of_one_length, nearest_name, starts_with
+  public :: string_type, to_text, exact_digits, some_of, lower, join, texts_of_one_length, nearest_name, starts_with, &
+            in_apostrophes
 
   integer, parameter :: longest_real = 48     !< characters of a real number
 
@@ -47,6 +48,14 @@ contains
     call write_real(number, digits, buffer)
     length = len_trim(buffer)
   end function real_length
+
+  !> Letters of a text between apostrophes.
+  pure integer function length_in_apostrophes(plain) result(length)
+    character(len=*), intent(in) :: plain   !< the text
+    integer :: i
+
+    length = len(plain) + count([(plain(i:i) == '''', i=1, len(plain))]) + 2
+  end function length_in_apostrophes
 
   !> Letters of a list of integers.
   pure integer function integers_length(numbers, separator) result(length)
@@ -249,6 +258,25 @@ contains
       end select
     end do
   end function lower
+
+  !> A text between apostrophes, as in data files and Fortran: those within it stand twice.
+  pure function in_apostrophes(plain) result(text)
+    character(len=*), intent(in) :: plain   !< the text
+    character(len=length_in_apostrophes(plain)) :: text
+    integer :: i, n
+
+    n = 1
+    text(1:1) = ''''
+    do i = 1, len(plain)
+      n = n + 1
+      text(n:n) = plain(i:i)
+      if (plain(i:i) == '''') then
+        n = n + 1
+        text(n:n) = ''''
+      end if
+    end do
+    text(n + 1:) = ''''
+  end function in_apostrophes
 
   !> Whether a text has this beginning, blanks at its end included.
   pure logical function starts_with(text, beginning)

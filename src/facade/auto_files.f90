@@ -4,7 +4,7 @@ module mech9_auto_files
   use mech9_program_kind, only: dynamics
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data
-  use mech9_text, only: to_text
+  use mech9_text, only: to_text, in_apostrophes
   use mech9_printable, only: with_escapes
   use mech9_text_file, only: save_text
   use mech9_model, only: model_type
@@ -386,17 +386,12 @@ contains
     character(len=*), intent(in) :: path    !< the text
     character(len=:), allocatable :: text
     integer, parameter :: longest = 100
-    integer :: from, i
+    integer :: from
 
     text = ''
     do from = 1, len(path), longest
       if (from > 1) text = text//'//&'//eol
-      text = text//'    '''
-      do i = from, min(from + longest - 1, len(path))
-        text = text//path(i:i)
-        if (path(i:i) == '''') text = text//''''
-      end do
-      text = text//''''
+      text = text//'    '//in_apostrophes(path(from:min(from + longest - 1, len(path))))
     end do
   end function literal
 
@@ -437,8 +432,8 @@ contains
     parameters = names(n + 1:)
     p = to_text(start%number)
     text = '# Constants for AUTO-07p, written by mech9-link --auto; the other direction: DS=''-'''//eol// &
-           'e='''//quoted(name)//''''//eol
-    if (start%is_periodic) text = text//'dat='''//quoted(name)//''''//eol
+           'e='//in_apostrophes(name)//eol
+    if (start%is_periodic) text = text//'dat='//in_apostrophes(name)//eol
     text = text//'unames={'
     do i = 1, n
       text = text//to_text(i)//': '''//short_name(names(:n), i, start%power(i))//''''//trim(merge(', ', '} ', i < n))
@@ -465,19 +460,6 @@ contains
            'THL={'//weights//'}, THU={}'//eol// &
            'UZSTOP={'//p//': ['//trim(exact(start%request%low/unit))//', '//trim(exact(start%request%high/unit))//']}'//eol
   end function constants_file
-
-  !> A text between quotes in a file of constants.
-  pure function quoted(plain) result(text)
-    character(len=*), intent(in) :: plain   !< the text
-    character(len=:), allocatable :: text
-    integer :: i
-
-    text = ''
-    do i = 1, len(plain)
-      text = text//plain(i:i)
-      if (plain(i:i) == '''') text = text//''''
-    end do
-  end function quoted
 
   !> A name for AUTO: short, with a letter at its beginning, unlike the others, and with the power of ten that is the unit of its
   !> numbers: q1/1e-2.

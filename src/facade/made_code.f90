@@ -3,7 +3,7 @@
 module mech9_made_code
   use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp
-  use mech9_text, only: to_text
+  use mech9_text, only: to_text, in_apostrophes
   use mech9_error, only: error_type
   use mech9_printable, only: with_escapes
   use mech9_text_file, only: save_text
@@ -358,33 +358,20 @@ contains
     call lines%put('    character(len=:), allocatable, intent(out) :: groups   ! of the data file that must not change')
     call lines%put('    character(len=:), allocatable, intent(out) :: name     ! of the data file')
     call lines%put('')
-    call lines%put('    name = '''//doubled(data_file)//'''')
+    call lines%put('    name = '//in_apostrophes(data_file))
     call lines%put('    groups = ''''')
     from = 1
     do while (from <= len(groups))
       next = index(groups(from:), eol)
       if (next == 0) next = len(groups) - from + 2
       if (next - 1 > longest) then
-        call lines%put('    groups = groups//'''//doubled(groups(from:from + longest - 1))//'''')
+        call lines%put('    groups = groups//'//in_apostrophes(groups(from:from + longest - 1)))
         from = from + longest
       else
-        call lines%put('    groups = groups//'''//doubled(groups(from:from + next - 2))//'''//achar(10)')
+        call lines%put('    groups = groups//'//in_apostrophes(groups(from:from + next - 2))//'//achar(10)')
         from = from + next
       end if
     end do
     call lines%put('  end subroutine describe_made_mechanism')
   end subroutine write_description
-
-  !> A text in which each apostrophe stands twice.
-  pure function doubled(plain) result(text)
-    character(len=*), intent(in) :: plain   !< the text
-    character(len=:), allocatable :: text
-    integer :: i
-
-    text = ''
-    do i = 1, len(plain)
-      text = text//plain(i:i)
-      if (plain(i:i) == '''') text = text//''''
-    end do
-  end function doubled
 end module mech9_made_code

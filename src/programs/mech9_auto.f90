@@ -3,7 +3,7 @@ program mech9_auto
   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
   use mech9, only: mechanism_type, error_type, read_file
   use mech9_auto_files, only: write_auto_files
-  use mech9_system, only: exit_program
+  use mech9_system, only: exit_program, take_argument
   implicit none
   type(mechanism_type) :: mechanism
   type(error_type), allocatable :: err
@@ -19,17 +19,4 @@ program mech9_auto
     call exit_program(err%code)
   end if
   write (output_unit, '(a)') files
-
-contains
-
-  !> Take an argument of the command line.
-  subroutine take_argument(i, text)
-    integer, intent(in) :: i                             !< its number
-    character(len=:), allocatable, intent(out) :: text   !< the argument
-    integer :: length
-
-    call get_command_argument(i, length=length)
-    allocate (character(len=length) :: text)
-    call get_command_argument(i, text)
-  end subroutine take_argument
 end program mech9_auto

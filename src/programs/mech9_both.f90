@@ -1,16 +1,14 @@
 !> mech9k and mech9d in one file, which holds once what both need: it is mech9d where it is called by a name that ends so.
 program mech9_both
   use mech9_program, only: run_program
+  use mech9_system, only: take_argument
   use mech9_kinematic_task, only: kinematic_task
   use mech9_dynamic_task, only: dynamic_task
   implicit none
   character(len=:), allocatable :: name
-  integer :: length
 
-  call get_command_argument(0, length=length)
-  allocate (character(len=length) :: name)
-  call get_command_argument(0, name)
-  if (name(max(1, length - 5):) == 'mech9d') then
+  call take_argument(0, name)
+  if (name(max(1, len(name) - 5):) == 'mech9d') then
     call run_program(dynamic_task())
   else
     call run_program(kinematic_task())

@@ -7,7 +7,7 @@ program mech9_special
   use mech9_parser, only: read_document
   use mech9_fixed_groups, only: fixed_groups
   use mech9_made_code, only: write_made_code
-  use mech9_system, only: exit_program
+  use mech9_system, only: exit_program, take_argument
   implicit none
   type(mechanism_type) :: mechanism
   type(document_type) :: document
@@ -28,17 +28,4 @@ program mech9_special
     call exit_program(err%code)
   end if
   write (output_unit, '(a)') told
-
-contains
-
-  !> Take an argument of the command line.
-  subroutine take_argument(i, text)
-    integer, intent(in) :: i                             !< its number
-    character(len=:), allocatable, intent(out) :: text   !< the argument
-    integer :: length
-
-    call get_command_argument(i, length=length)
-    allocate (character(len=length) :: text)
-    call get_command_argument(i, text)
-  end subroutine take_argument
 end program mech9_special

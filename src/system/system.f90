@@ -7,7 +7,7 @@ module mech9_system
   use mech9_system_error, only: error_number, clear_error_number, reason
   implicit none
   private
-  public :: exit_program, is_terminal, standard_input, standard_output, standard_error
+  public :: exit_program, take_argument, is_terminal, standard_input, standard_output, standard_error
   public :: catch_interrupts, catch_size_limit, leave_quit_alone, interrupted, asked_to_end, hung_up, flush_output
 
   !> The three standard files, for `is_terminal`.
@@ -65,6 +65,17 @@ module mech9_system
   end interface
 
 contains
+
+  !> Take an argument of the command line, or with the number 0 the name of the program.
+  subroutine take_argument(i, text)
+    integer, intent(in) :: i                             !< its number
+    character(len=:), allocatable, intent(out) :: text   !< the argument
+    integer :: length
+
+    call get_command_argument(i, length=length)
+    allocate (character(len=length) :: text)
+    if (length > 0) call get_command_argument(i, text)
+  end subroutine take_argument
 
   !> End the program with an exit code, after all units are flushed. `stop` with a code would print
   !> it, `error stop` a backtrace.

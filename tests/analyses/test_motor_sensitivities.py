@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from dynamic_derivatives import PENDULUM_FOUR_BAR, SOLVER, TOLERANCE, TOLERANCES, Case, declared
+from law_mechanisms import FOUR_BAR
 from mech9_cases import run
 
 FLYWHEEL = """&structure cq=1 /
@@ -34,20 +35,7 @@ SLIDE = """&structure cq=1 /
 SLIDE_PARAMETERS = (('proportional', 'motor.proportional', 80.0), ('integral', 'motor.integral', 60.0), ('derivative', 'motor.derivative', 7.0),
                     ('setpoint', 'motor.setpoint', 0.4), ('mass', 'body.mass', 2.0), ('stiffness', 'load.stiffness', 50.0),
                     ('damping', 'load.damping', 1.0), ('start', 'initial.position', 0.1))
-FOUR_BAR = """&structure cq=1 /
-&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
-&pair coordinate=2, links=2,3, kind='revolute', point=0.2,0,0, axis=0,0,1 /
-&pair coordinate=3, links=3,4, kind='revolute', point=0.7,0,0, axis=0,0,1, moving_point=1,0,0 /
-&pair coordinate=4, links=1,4, kind='revolute', point=0.6,0,0, axis=0,0,1, moving_point=0.6,0,0 /
-&initial coordinate=1, position=0.3 /
-&initial coordinate=2, position=0.45 /
-&initial coordinate=3, position=0.93 /
-&initial coordinate=4, position=1.67 /
-&body link=2, mass=1, centre=0.05,0.02,0, inertia=0.03,0.03,0.03,0,0,0 /
-&body link=3, mass=0.5, centre=0.4,0.1,0, inertia=0.01,0.01,0.01,0,0,0 /
-&body link=4, mass=0.8, centre=0.65,0.2,0, inertia=0.02,0.02,0.02,0,0,0 /
-&gravity acceleration=0,-9.81,0 /
-&motor coordinate=1, {} /
+LINKAGE = FOUR_BAR + """&motor coordinate=1, {} /
 &time end=0.3, intervals=3 /
 """
 MECHANISM_PARAMETERS = (('mass', 'body(2).mass', 0.5), ('crank', 'pair(2).point(1)', 0.2), ('start', 'initial(1).position', 0.3))
@@ -128,7 +116,7 @@ PID = "kind='pid', proportional=30, integral=40{}, setpoint=1.2"
     ('without a derivative part', PID.format(', limit=9'), (('limit', 'motor.limit', 9.0), ('proportional', 'motor.proportional', 30.0)))),
     ids=('motor', 'no inductance', 'voltage by a law', 'controller', 'controller with a limit', 'no derivative part'))
 def test_four_bar_linkage_by_differences_of_runs(case, why, motor, parameters):
-    case.against_runs(FOUR_BAR.format(motor), parameters + MECHANISM_PARAMETERS[:1 + 2 * (why == 'a motor')], f'four-bar linkage with {why}',
+    case.against_runs(LINKAGE.format(motor), parameters + MECHANISM_PARAMETERS[:1 + 2 * (why == 'a motor')], f'four-bar linkage with {why}',
                       2.0**-9)
 
 
@@ -141,7 +129,7 @@ def test_changes_of_the_independent_coordinates(case):
 
 def test_other_methods_of_integration(case):
     """Outputs within steps, and all methods: they differ by a thousand tolerances at most."""
-    text = FOUR_BAR.format("kind='pid', proportional=30, integral=40, derivative=3, limit=9, setpoint=1.2").replace('intervals=3', 'intervals=30')
+    text = LINKAGE.format("kind='pid', proportional=30, integral=40, derivative=3, limit=9, setpoint=1.2").replace('intervals=3', 'intervals=30')
     text += declared((('limit', 'motor.limit', 9.0),)) + '&output sensitivities=.true. /\n'
     runs = [case.table(text + f"&solver method='{method}', relative_tolerance=1e-11, absolute_tolerance=1e-12 /\n")
             for method in ('auto', 'verner', 'bdf')]

@@ -2,7 +2,7 @@
 module test_text
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_positive_inf, ieee_negative_inf
   use mech9_kinds, only: wp, long
-  use mech9_text, only: string_type, to_text, lower, join, nearest_name, starts_with
+  use mech9_text, only: string_type, to_text, lower, join, nearest_name, starts_with, in_apostrophes
   use mech9_counted, only: counted
   use mech9_random, only: random_type
   use mech9_testing, only: tester_type
@@ -136,6 +136,8 @@ contains
     call test%is_true(starts_with('dq', 'dq'), 'a text starts with itself')
     call test%is_true(.not. starts_with('d', 'dq'), 'a text does not start with a longer one')
     call test%is_true(.not. starts_with('d', 'd '), 'a text does not start with itself and a blank')
+    call same(test, in_apostrophes('the crank''s'), '''the crank''''s''')
+    call same(test, in_apostrophes(''), '''''')
     words(1)%text = 'one'
     words(2)%text = ''
     words(3)%text = ' b'

@@ -1,6 +1,6 @@
 !> A document written as the text of a data file. Reading the text gives the same document, with the same bits of its numbers.
 module mech9_document_text
-  use mech9_text, only: to_text, exact_digits, string_type, join
+  use mech9_text, only: to_text, exact_digits, string_type, join, in_apostrophes
   use mech9_document, only: document_type, group_type, item_type, value_type, subscript_type, value_integer, value_real, &
     value_logical, value_text, value_word
   implicit none
@@ -82,7 +82,6 @@ contains
   pure subroutine write_value(value, text)
     type(value_type), intent(in) :: value                !< the value
     character(len=:), allocatable, intent(out) :: text   !< as a data file has it
-    integer :: i
 
     text = ''
     if (value%times > 1) text = to_text(value%times)//'*'
@@ -96,12 +95,7 @@ contains
     case (value_word)
       text = text//value%text
     case (value_text)
-      text = text//''''
-      do i = 1, len(value%text)
-        text = text//value%text(i:i)
-        if (value%text(i:i) == '''') text = text//''''
-      end do
-      text = text//''''
+      text = text//in_apostrophes(value%text)
     end select
   end subroutine write_value
 end module mech9_document_text

@@ -3,6 +3,7 @@ module mech9_command_line
   use mech9_program_kind, only: kinematics, program_names, belongs_to
   use mech9_error, only: error_type, raise, exit_usage
   use mech9_text, only: string_type, nearest_name, starts_with
+  use mech9_system, only: take_argument
   use mech9_options, only: option_type, options_table, option_names, find_option, &
                            no_argument, optional_argument, whole_number, assignment, part_of_whole
   use mech9_argument_forms, only: is_whole_number, is_assignment, is_part
@@ -40,13 +41,11 @@ contains
   !> Get the words of this program's own command line, without the program's name.
   subroutine get_command_words(words)
     type(string_type), allocatable, intent(out) :: words(:)  !< the words, without the program's name
-    integer :: i, length
+    integer :: i
 
     allocate (words(command_argument_count()))
     do i = 1, size(words)
-      call get_command_argument(i, length=length)
-      allocate (character(len=length) :: words(i)%text)
-      if (length > 0) call get_command_argument(i, words(i)%text)
+      call take_argument(i, words(i)%text)
     end do
   end subroutine get_command_words
 
