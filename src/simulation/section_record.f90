@@ -285,7 +285,8 @@ contains
     else
       self%range = [min(self%range(1), self%first%numbers(0), self%last%numbers(0)), &
                     max(self%range(2), self%first%numbers(0), self%last%numbers(0))]
-      call find_passings(watched, self%levels, self%first, self%last, self%cell, self%passings, self%last_cell, err)
+      watched%levels = self%levels
+      call find_passings(watched, self%first, self%last, self%cell, self%passings, self%last_cell, err)
       if (allocated(err)) return
     end if
     self%searched = .true.

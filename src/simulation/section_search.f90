@@ -16,12 +16,6 @@ module mech9_section_search
   !> A polynomial by rates alone is wrong by this part of its range at most: it is of fourth order in the length of the stride.
   real(wp), parameter :: error_by_rates = 0.05_wp
 
-  !> Who finds the value at a time within the present stride.
-  type, abstract :: watched_type
-  contains
-    procedure(value_interface), deferred :: value_at
-  end type watched_type
-
   !> A value with its derivatives in time, as far as these are known.
   type :: known_value_type
     real(wp) :: t = 0.0_wp                !< time [s]
@@ -39,6 +33,13 @@ module mech9_section_search
     procedure :: is_near
     procedure, private :: nearest_level
   end type levels_type
+
+  !> A value that is watched, with its levels: who finds it at a time within the present stride.
+  type, abstract :: watched_type
+    type(levels_type) :: levels           !< those that it passes
+  contains
+    procedure(value_interface), deferred :: value_at
+  end type watched_type
 
   !> The passing of a level.
   type :: passing_type
@@ -102,9 +103,8 @@ contains
   end function level
 
   !> Find all passings of levels within a stride, in the order of time. One that is not met on the motion itself is left out.
-  subroutine find_passings(watched, levels, first, last, from_cell, passings, to_cell, err)
+  subroutine find_passings(watched, first, last, from_cell, passings, to_cell, err)
     class(watched_type), intent(inout) :: watched                   !< finds values within the stride
-    type(levels_type), intent(in) :: levels                         !< the levels
     type(known_value_type), intent(in) :: first                     !< the value at the start of the stride
     type(known_value_type), intent(in) :: last                      !< the value at its end
     integer, intent(in) :: from_cell                                !< cell at the start
@@ -112,22 +112,23 @@ contains
     integer, intent(out) :: to_cell                                 !< cell at the end
     type(error_type), allocatable, intent(out) :: err               !< allocated if it failed
     type(known_value_type), allocatable :: seen(:)
-    integer :: i, next, step
+    type(passing_type) :: passing
+    integer :: i, next
     logical :: passed
-    real(wp) :: t
 
     allocate (passings(0))
     to_cell = from_cell
-    call look_within(watched, levels, first, last, seen, err)
+    call look_within(watched, first, last, seen, err)
     if (allocated(err)) return
     do i = 1, size(seen) - 1
-      next = levels%cell(seen(i + 1)%numbers(0), to_cell)
-      step = sign(1, next - to_cell)
+      next = watched%levels%cell(seen(i + 1)%numbers(0), to_cell)
       do while (to_cell /= next)
-        call find_time(watched, levels%level(to_cell, to_cell + step), step, seen, i, t, passed, err)
+        passing%before = to_cell
+        passing%behind = to_cell + sign(1, next - to_cell)
+        call find_time(watched, seen, i, passing, passed, err)
         if (allocated(err)) return
-        if (passed) passings = [passings, passing_type(t, to_cell, to_cell + step)]
-        to_cell = to_cell + step
+        if (passed) passings = [passings, passing]
+        to_cell = passing%behind
       end do
     end do
     call remove_unmet_pairs(passings, from_cell)
@@ -150,9 +151,8 @@ contains
 
   !> Look at the value at times within a stride: by a polynomial where derivatives are known, and else on the motion. Where it turns near a
   !> level, the motion is asked.
-  subroutine look_within(watched, levels, first, last, seen, err)
+  subroutine look_within(watched, first, last, seen, err)
     class(watched_type), intent(inout) :: watched                     !< finds values within the stride
-    type(levels_type), intent(in) :: levels                           !< the levels
     type(known_value_type), intent(in) :: first                       !< the value at the start
     type(known_value_type), intent(in) :: last                        !< the value at the end
     type(known_value_type), allocatable, intent(out) :: seen(:)       !< values at times, both ends included
@@ -178,60 +178,59 @@ contains
       associate (a => seen(i - 1)%numbers(0), b => seen(i)%numbers(0), c => seen(i + 1)%numbers(0))
         if ((b - a)*(c - b) >= 0.0_wp) cycle
         ! the parabola through three looks turns there
-        call look_at_turn(watched, levels, h/n, (b), 0.5_wp*(c - a), 0.5_wp*(a - 2.0_wp*b + c), margin, seen(i), err)
+        call look_at_turn(watched, h/n, [b, 0.5_wp*(c - a), 0.5_wp*(a - 2.0_wp*b + c)], margin, seen(i), err)
       end associate
       if (allocated(err)) return
     end do
     slopes = 0.5_wp*[4.0_wp*seen(2)%numbers(0) - 3.0_wp*seen(1)%numbers(0) - seen(3)%numbers(0), &
                      3.0_wp*seen(n + 1)%numbers(0) - 4.0_wp*seen(n)%numbers(0) + seen(n - 1)%numbers(0)]
     if (first%derivatives > 0) slopes = h/n*[first%numbers(1), last%numbers(1)]
-    call look_near_end(watched, levels, -h/n, (seen(n + 1)), (seen(n)), -slopes(2), margin, seen, n + 1, err)
-    if (.not. allocated(err)) call look_near_end(watched, levels, h/n, (seen(1)), (seen(2)), slopes(1), margin, seen, 2, err)
+    call look_near_end(watched, -h/n, -slopes(2), margin, seen, n + 1, err)
+    if (.not. allocated(err)) call look_near_end(watched, h/n, slopes(1), margin, seen, 1, err)
   end subroutine look_within
 
   !> Look at the value where a parabola turns near a level, in place of a look.
-  subroutine look_at_turn(watched, levels, h, value, slope, curvature, margin, look, err)
+  subroutine look_at_turn(watched, h, parabola, margin, look, err)
     class(watched_type), intent(inout) :: watched         !< finds values within the stride
-    type(levels_type), intent(in) :: levels               !< the levels
     real(wp), intent(in) :: h                             !< unit of time of the parabola [s]
-    real(wp), intent(in) :: value                         !< of the parabola at the look
-    real(wp), intent(in) :: slope                         !< its slope there
-    real(wp), intent(in) :: curvature                     !< half its second derivative
+    real(wp), intent(in) :: parabola(0:2)                 !< its value at the look, its slope there and half its second derivative
     real(wp), intent(in) :: margin                        !< error of values at looks
     type(known_value_type), intent(inout) :: look         !< the look; its time and value are those of the turn where it is near a level
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
     real(wp) :: height, nearest
 
-    height = value - 0.25_wp*slope**2/curvature
-    nearest = levels%nearest_level(height)
-    if (abs(height - nearest) > margin + 2.0_wp*abs(height - value) + levels%round_off .and. &
-        (height - nearest)*(value - nearest) > 0.0_wp) return
-    look%t = look%t - 0.5_wp*slope/curvature*h
+    height = parabola(0) - 0.25_wp*parabola(1)**2/parabola(2)
+    nearest = watched%levels%nearest_level(height)
+    if (abs(height - nearest) > margin + 2.0_wp*abs(height - parabola(0)) + watched%levels%round_off .and. &
+        (height - nearest)*(parabola(0) - nearest) > 0.0_wp) return
+    look%t = look%t - 0.5_wp*parabola(1)/parabola(2)*h
     call watched%value_at(look%t, look%numbers(0), err)
   end subroutine look_at_turn
 
   !> Look at the value where it turns between an end of the stride and the look next to it, if it does so near a level.
-  subroutine look_near_end(watched, levels, h, end, beside, slope, margin, seen, place, err)
+  subroutine look_near_end(watched, h, slope, margin, seen, place, err)
     class(watched_type), intent(inout) :: watched                       !< finds values within the stride
-    type(levels_type), intent(in) :: levels                             !< the levels
     real(wp), intent(in) :: h                                           !< time from the end to the look beside it [s]
-    type(known_value_type), intent(in) :: end                           !< the value at the end
-    type(known_value_type), intent(in) :: beside                        !< the value at this look
     real(wp), intent(in) :: slope                                       !< of the value at the end, towards the look, in this time
     real(wp), intent(in) :: margin                                      !< error of values at looks
     type(known_value_type), allocatable, intent(inout) :: seen(:)       !< gets one look more
-    integer, intent(in) :: place                                        !< its place there
+    integer, intent(in) :: place                                        !< of the end there: the first or the last one
     type(error_type), allocatable, intent(out) :: err                   !< allocated if it failed
     type(known_value_type) :: look
-    real(wp) :: curvature
+    real(wp) :: curvature, at, end_time
+    integer :: beside
 
-    curvature = beside%numbers(0) - end%numbers(0) - slope
+    beside = place + merge(1, -1, place == 1)
+    at = seen(place)%numbers(0)
+    end_time = seen(place)%t
+    curvature = seen(beside)%numbers(0) - at - slope
     ! the parabola turns between both
     if (slope*(slope + 2.0_wp*curvature) >= 0.0_wp) return
-    look%t = end%t
-    call look_at_turn(watched, levels, h, end%numbers(0), slope, curvature, margin, look, err)
-    if (allocated(err) .or. .not. abs(look%t - end%t) > 0.0_wp) return
-    seen = [seen(:place - 1), look, seen(place:)]
+    look%t = end_time
+    call look_at_turn(watched, h, [at, slope, curvature], margin, look, err)
+    if (allocated(err) .or. .not. abs(look%t - end_time) > 0.0_wp) return
+    beside = max(place, beside)
+    seen = [seen(:beside - 1), look, seen(beside:)]
   end subroutine look_near_end
 
   !> Take values from the polynomial through both ends of a stride.
@@ -263,22 +262,22 @@ contains
   end subroutine take_polynomial
 
   !> Find the time at which a level is passed between two looks, or near them where the polynomial was wrong.
-  subroutine find_time(watched, level, step, seen, i, t, passed, err)
+  subroutine find_time(watched, seen, i, passing, passed, err)
     class(watched_type), intent(inout) :: watched           !< finds values within the stride
-    real(wp), intent(in) :: level                           !< the level
-    integer, intent(in) :: step                             !< 1: the value grows there, -1: it falls
     type(known_value_type), intent(in) :: seen(:)           !< values at times
     integer, intent(in) :: i                                !< the passing is seen behind this one
-    real(wp), intent(out) :: t                              !< the time [s]
+    type(passing_type), intent(inout) :: passing            !< with its cells; gets the time
     logical, intent(out) :: passed                          !< the motion itself passes there
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     type(false_position_type) :: search
-    real(wp) :: before, behind, value
-    integer :: low, high, trial
+    real(wp) :: before, behind, value, level
+    integer :: low, high, trial, step
     logical :: found
 
     passed = .false.
-    t = seen(i)%t
+    level = watched%levels%level(passing%before, passing%behind)
+    step = passing%behind - passing%before
+    passing%t = seen(i)%t
     low = i
     do
       call value_seen(low, before)
@@ -295,19 +294,19 @@ contains
     end do
     if (behind < 0.0_wp) return
     passed = .true.
-    t = seen(low)%t
+    passing%t = seen(low)%t
     if (before >= 0.0_wp) return
-    t = seen(high)%t
+    passing%t = seen(high)%t
     if (.not. behind > 0.0_wp) return
     search = new_false_position(seen(low)%t, before, seen(high)%t, behind)
     do trial = 1, most_trials
-      call search%next(t, found)
+      call search%next(passing%t, found)
       if (.not. found) return
-      call watched%value_at(t, value, err)
+      call watched%value_at(passing%t, value, err)
       if (allocated(err)) return
       value = step*(value - level)
       if (.not. abs(value) > 0.0_wp) return
-      call search%take(t, value)
+      call search%take(passing%t, value)
     end do
   contains
     !> The distance from the level at a look, on the motion itself.

@@ -11,6 +11,9 @@ from mech9_cases import TREE, text_of
 
 FOLDERS = ('src', 'bench', 'user_procs', 'tests')
 
+MANY = 7                   # arguments: more are hard to follow, and some of them then belong together in a type
+MOST_WITH_MORE = 88        # procedures and interfaces of src that have more; the number only goes down
+
 STRING = re.compile(r"'[^']*'|\"[^\"]*\"")
 PROCEDURE = re.compile(r'^(?P<before>[^!]*?)\b(?:subroutine|function)\s+(?P<name>\w+)\s*(?:\((?P<arguments>[^)]*)\))?', re.I)
 PREFIX = re.compile(r'^\s*(?:(?:pure|impure|elemental|recursive|module|integer|logical|real|complex|double\s+precision|character|type|class)'
@@ -83,6 +86,14 @@ def unexplained(text, folder=''):
     return found
 
 
+def argument_lists(text, folder=''):
+    """(line number, procedure, number of its arguments) of the procedures and interfaces that have arguments."""
+    for number, code, _ in statements(text, folder):
+        begins = PROCEDURE.match(code)
+        if begins and not END.match(code) and PREFIX.match(begins.group('before')) and begins.group('arguments'):
+            yield number, begins.group('name'), len([name for name in begins.group('arguments').split(',') if name.strip()])
+
+
 def files_of(path):
     return sorted(glob.glob(os.path.join(path, '**', '*.f90'), recursive=True)
                   + glob.glob(os.path.join(path, '**', '*.f90.in'), recursive=True))
@@ -103,6 +114,13 @@ def test_reader_of_sources(checks):
 '''
     checks.equal(unexplained(text), [(5, 'turn', 'axis'), (5, 'turn', 'r'), (9, 'norm', 'v')],
                  'arguments that share a line, or are explained by their name alone, are found')
+
+
+def test_argument_lists_are_short(checks):
+    long = [f'{os.path.relpath(file, TREE)}:{line} {name}: {count}' for file in files_of(os.path.join(TREE, 'src'))
+            for line, name, count in argument_lists(text_of(file), os.path.dirname(file)) if count > MANY]
+    checks.equal(len(long), MOST_WITH_MORE, f'as many procedures as are counted here have more than {MANY} arguments: after one that is shorter, '
+                 'lower MOST_WITH_MORE')
 
 
 def test_arguments_are_explained(checks):

@@ -7,8 +7,8 @@ module mech9_curve_tracing
     same_direction, near_special, near_branching
   use mech9_curve, only: curve_type, curve_point_type, verdict_type
   use mech9_curve_step, only: correction_type, correct, correct_along, set_direction
-  use mech9_special_points, only: regular, fold, branching, period_doubling, range_end, test_of, locate, growing_pairs, &
-    locate_hopf, growing_reals, locate_crossings
+  use mech9_special_points, only: regular, fold, branching, period_doubling, range_end, curve_stride_type, test_of, locate, &
+    growing_pairs, locate_hopf, growing_reals, locate_crossings
   use mech9_branch_point, only: branch_point_type, polish_branch_point
   use mech9_curve_branch, only: curve_branch_type, curve_settings_type, ends_low, ends_high, ends_points, ends_closed, ends_range, &
     ends_failed, ends_stopped, ends_special
@@ -40,14 +40,14 @@ contains
     type(curve_settings_type), intent(in) :: settings                 !< bounds
     type(curve_branch_type), intent(inout) :: branch                  !< gets the points
     type(branch_point_type), allocatable, intent(inout) :: met(:)     !< gets the branch points
-    type(curve_point_type) :: a, b
-    type(verdict_type) :: verdict(2)
+    type(curve_stride_type) :: stride
+    type(verdict_type) :: verdict
     real(wp) :: h
     logical :: done
 
-    a = start
-    call curve%judge(a, verdict(1))
-    call branch%add(a, verdict(1), kind)
+    stride%from = start
+    call curve%judge(stride%from, stride%before)
+    call branch%add(stride%from, stride%before, kind)
     h = first_part*settings%step
     associate (last => branch%ends(2))
       do
@@ -55,15 +55,15 @@ contains
         if (branch%count >= settings%points) return
         last%reason = ends_stopped
         if (curve%is_stopped()) return
-        call step_on(curve, a, settings%step, h, b, last%last_step, branch, done)
+        call step_on(curve, stride, settings%step, h, branch, done)
         if (.not. done) return
         last%reason = 0
-        call pass_events(curve, start, merge(kind, regular, branch%count == 1), settings, a, b, verdict(1), branch, met)
+        call pass_events(curve, start, merge(kind, regular, branch%count == 1), settings, stride, branch, met)
         if (last%reason > 0) return
-        call curve%judge(b, verdict(2))
-        call branch%add(b, verdict(2), regular)
-        verdict(1) = verdict(2)
-        call go_on(curve, b, a, done)
+        call curve%judge(stride%to, verdict)
+        call branch%add(stride%to, verdict, regular)
+        stride%before = verdict
+        call go_on(curve, stride%to, stride%from, done)
         last%reason = ends_failed
         if (.not. done) return
       end do
@@ -71,36 +71,37 @@ contains
   end subroutine trace
 
   !> Make a step: shorter ones are tried until one is accepted.
-  subroutine step_on(curve, a, longest, h, b, last_step, branch, done)
+  subroutine step_on(curve, stride, longest, h, branch, done)
     class(curve_type), intent(inout) :: curve              !< the problem
-    type(curve_point_type), intent(in) :: a                !< from this point
+    type(curve_stride_type), intent(inout) :: stride       !< from its first point; gets the next one, with its direction
     real(wp), intent(in) :: longest                        !< longest step
     real(wp), intent(inout) :: h                           !< length to be tried; then that of the next step
-    type(curve_point_type), intent(inout) :: b             !< the next point, with its direction
-    real(wp), intent(out) :: last_step                     !< length that was tried last
-    type(curve_branch_type), intent(inout) :: branch       !< gets the reason where no step is accepted
+    type(curve_branch_type), intent(inout) :: branch       !< gets the length tried last, and the reason where no step is accepted
     logical, intent(out) :: done                           !< one is accepted
     type(correction_type) :: correction
     real(wp) :: turn
 
-    do
-      last_step = h
-      turn = -1.0_wp
-      call correct_along(curve, a, h, b, correction)
-      done = correction%done
-      if (done) call set_direction(b, a%direction, done)
-      if (done) then
-        turn = dot_product(a%direction, b%direction)
-        done = turn >= most_turn .and. norm2(b%z - a%z - h*a%direction) <= most_departure*h
-      end if
-      if (done) exit
-      if (h < least_curve_step) then
-        branch%ends(2)%reason = ends_failed
-        if (allocated(correction%err)) branch%ends(2)%err = correction%err
-        return
-      end if
-      h = 0.5_wp*h
-    end do
+    associate (a => stride%from, b => stride%to)
+      do
+        branch%ends(2)%last_step = h
+        turn = -1.0_wp
+        call correct_along(curve, a, h, b, correction)
+        done = correction%done
+        if (done) call set_direction(b, a%direction, done)
+        if (done) then
+          turn = dot_product(a%direction, b%direction)
+          done = turn >= most_turn .and. norm2(b%z - a%z - h*a%direction) <= most_departure*h
+        end if
+        if (done) exit
+        if (h < least_curve_step) then
+          branch%ends(2)%reason = ends_failed
+          if (allocated(correction%err)) branch%ends(2)%err = correction%err
+          return
+        end if
+        h = 0.5_wp*h
+      end do
+      stride%length = dot_product(b%z - a%z, a%direction)
+    end associate
     if (correction%steps <= few_steps .and. turn > little_turn) h = min(longest, growth_of_step*h)
     if (correction%steps >= many_steps) h = h/growth_of_step
   end subroutine step_on
@@ -137,30 +138,26 @@ contains
   end subroutine change
 
   !> Add the special points within a step to the branch, in their order, and the point where the branch ends, if it does.
-  subroutine pass_events(curve, start, from, settings, a, b, before, branch, met)
+  subroutine pass_events(curve, start, from, settings, stride, branch, met)
     class(curve_type), intent(inout) :: curve                         !< the problem
     type(curve_point_type), intent(in) :: start                       !< the point at which the branch began
     integer, intent(in) :: from                                       !< kind of the start in the first step from it, else regular
     type(curve_settings_type), intent(in) :: settings                 !< bounds
-    type(curve_point_type), intent(in) :: a                           !< the point before
-    type(curve_point_type), intent(in) :: b                           !< the point behind
-    type(verdict_type), intent(in) :: before                          !< of the point before
+    type(curve_stride_type), intent(in) :: stride                     !< the step
     type(curve_branch_type), intent(inout) :: branch                  !< gets the points
     type(branch_point_type), allocatable, intent(inout) :: met(:)     !< gets the branch points
     type(event_type) :: events(3), last
     type(branch_point_type) :: found
     type(verdict_type) :: verdict
-    real(wp) :: length
     integer :: i, next
     logical :: done
 
-    length = dot_product(b%z - a%z, a%direction)
-    call find_end(curve, start, settings, a, b, length, last, branch)
+    call find_end(curve, start, settings, stride, last, branch)
     if (from /= branching .and. from /= period_doubling) then
       call look_for(branching, events(1))
       call look_for(fold, events(2))
       if (events(1)%kind == branching .and. events(2)%kind == fold .and. &
-          abs(events(1)%distance - events(2)%distance) < near_branching*length) events(2)%kind = regular
+          abs(events(1)%distance - events(2)%distance) < near_branching*stride%length) events(2)%kind = regular
     end if
     ! a pair of multipliers is on the unit circle where periods double, within errors
     if (from /= period_doubling) call judge_behind()
@@ -168,13 +165,13 @@ contains
       next = 0
       do i = 1, size(events)
         if (events(i)%kind == regular) cycle
-        if (branch%ends(2)%reason > 0 .and. events(i)%distance > last%distance - near_special*length) cycle
+        if (branch%ends(2)%reason > 0 .and. events(i)%distance > last%distance - near_special*stride%length) cycle
         if (next == 0) next = i
         if (events(i)%distance < events(next)%distance) next = i
       end do
       if (next == 0) exit
       if (events(next)%kind == branching) then
-        call keep_direction(a, b, events(next)%point)
+        call keep_direction(stride%from, stride%to, events(next)%point)
         call polish_branch_point(curve, events(next)%point, found)
         if (events(next)%is_guess .and. .not. found%is_polished) then
           events(next)%kind = regular
@@ -207,13 +204,13 @@ contains
       real(wp) :: tests(2)
       logical :: is_there
 
-      tests = [test_of(curve, kind, a), test_of(curve, kind, b)]
+      tests = [test_of(curve, kind, stride%from), test_of(curve, kind, stride%to)]
       if (.not. tests(1)*tests(2) < 0.0_wp) return
-      call locate(curve, a, length, kind, tests, event%distance, event%point, is_there)
+      call locate(curve, stride, kind, tests, event%distance, event%point, is_there)
       if (.not. is_there .and. kind == branching) then
-        call guess_between(curve, a, b, tests, event%point, is_there)
+        call guess_between(curve, stride%from, stride%to, tests, event%point, is_there)
         event%is_guess = .true.
-        event%distance = length*abs(tests(1))/sum(abs(tests))
+        event%distance = stride%length*abs(tests(1))/sum(abs(tests))
       end if
       if (is_there) event%kind = kind
     end subroutine look_for
@@ -223,14 +220,14 @@ contains
       type(verdict_type) :: behind
       logical :: is_there
 
-      if (size(before%roots) == 0) return
-      call curve%judge(b, behind)
-      if (growing_pairs(before) /= growing_pairs(behind)) then
-        call locate_hopf(curve, a, length, [growing_pairs(before), growing_pairs(behind)], events(3)%distance, events(3)%point, &
-                         is_there)
+      if (size(stride%before%roots) == 0) return
+      call curve%judge(stride%to, behind)
+      if (growing_pairs(stride%before) /= growing_pairs(behind)) then
+        call locate_hopf(curve, stride, [growing_pairs(stride%before), growing_pairs(behind)], events(3)%distance, &
+                         events(3)%point, is_there)
         if (is_there) events(3)%kind = curve%kind_of_crossing(events(3)%point)
-      else if (abs(growing_reals(before) - growing_reals(behind)) > 1 .and. all(events%kind == regular)) then
-        call locate_crossings(curve, a, length, growing_reals(before), events(3)%distance, events(3)%point, is_there)
+      else if (abs(growing_reals(stride%before) - growing_reals(behind)) > 1 .and. all(events%kind == regular)) then
+        call locate_crossings(curve, stride, growing_reals(stride%before), events(3)%distance, events(3)%point, is_there)
         if (is_there) events(3)%kind = branching
       end if
     end subroutine judge_behind
@@ -309,13 +306,11 @@ contains
   end subroutine keep_direction
 
   !> Find where a branch ends within a step: where it began, at a limit of the parameter, or where solutions lose their meaning.
-  subroutine find_end(curve, start, settings, a, b, length, last, branch)
+  subroutine find_end(curve, start, settings, stride, last, branch)
     class(curve_type), intent(inout) :: curve              !< the problem
     type(curve_point_type), intent(in) :: start            !< the point at which the branch began
     type(curve_settings_type), intent(in) :: settings      !< bounds
-    type(curve_point_type), intent(in) :: a                !< the point before
-    type(curve_point_type), intent(in) :: b                !< the point behind
-    real(wp), intent(in) :: length                         !< distance between them
+    type(curve_stride_type), intent(in) :: stride          !< the step
     type(event_type), intent(out) :: last                  !< the end; without a point where it is the point before
     type(curve_branch_type), intent(inout) :: branch       !< gets the reason; 0: none
     type(event_type) :: barrier
@@ -323,28 +318,30 @@ contains
     logical :: found
     integer :: m
 
-    m = size(a%z)
-    if (branch%count > 2) call find_start(curve, start, a, length, last, branch, found)
+    if (branch%count > 2) call find_start(curve, start, stride, last, branch, found)
     if (branch%ends(2)%reason == ends_closed) return
-    if (b%z(m) < settings%low .or. b%z(m) > settings%high) then
-      limit = merge(settings%low, settings%high, b%z(m) < settings%low)
-      branch%ends(2)%reason = merge(ends_low, ends_high, b%z(m) < settings%low)
-      call reach_limit(curve, a, b, limit, last, found)
-      if (.not. found) last%kind = range_end
-      if (found) last%distance = dot_product(last%point%z - a%z, a%direction)
-    end if
-    tests = [test_of(curve, range_end, a), test_of(curve, range_end, b)]
-    if (tests(2) >= 0.0_wp) return
-    found = tests(1) > 0.0_wp
-    barrier%distance = 0.0_wp
-    if (found) then
-      call curve%meet_end(a, b, barrier%point, barrier%row)
-      if (barrier%row /= regular) then
-        barrier%distance = dot_product(barrier%point%z - a%z, a%direction)
-      else
-        call locate(curve, a, length, range_end, tests, barrier%distance, barrier%point, found)
+    associate (a => stride%from, b => stride%to)
+      m = size(a%z)
+      if (b%z(m) < settings%low .or. b%z(m) > settings%high) then
+        limit = merge(settings%low, settings%high, b%z(m) < settings%low)
+        branch%ends(2)%reason = merge(ends_low, ends_high, b%z(m) < settings%low)
+        call reach_limit(curve, a, b, limit, last, found)
+        if (.not. found) last%kind = range_end
+        if (found) last%distance = dot_product(last%point%z - a%z, a%direction)
       end if
-    end if
+      tests = [test_of(curve, range_end, a), test_of(curve, range_end, b)]
+      if (tests(2) >= 0.0_wp) return
+      found = tests(1) > 0.0_wp
+      barrier%distance = 0.0_wp
+      if (found) then
+        call curve%meet_end(a, b, barrier%point, barrier%row)
+        if (barrier%row /= regular) then
+          barrier%distance = dot_product(barrier%point%z - a%z, a%direction)
+        else
+          call locate(curve, stride, range_end, tests, barrier%distance, barrier%point, found)
+        end if
+      end if
+    end associate
     ! the limit of the parameter may come first
     if (branch%ends(2)%reason > 0 .and. last%kind == regular .and. last%distance < barrier%distance) return
     branch%ends(2)%reason = merge(ends_range, ends_special, barrier%row == regular)
@@ -378,32 +375,34 @@ contains
   end subroutine reach_limit
 
   !> Find the point where the branch began within a step, and end there.
-  subroutine find_start(curve, start, a, length, last, branch, found)
+  subroutine find_start(curve, start, stride, last, branch, found)
     class(curve_type), intent(inout) :: curve              !< the problem
     type(curve_point_type), intent(in) :: start            !< the point at which the branch began
-    type(curve_point_type), intent(in) :: a                !< the point before
-    real(wp), intent(in) :: length                         !< of the step
+    type(curve_stride_type), intent(in) :: stride          !< the step
     type(event_type), intent(inout) :: last                !< gets the point
     type(curve_branch_type), intent(inout) :: branch       !< gets the reason
     logical, intent(out) :: found                          !< it lies within the step
     type(correction_type) :: correction
     type(curve_point_type) :: point
-    real(wp) :: way(size(a%z)), normal(size(a%place)), distance
+    real(wp) :: way(size(stride%from%z)), normal(size(stride%from%place)), distance
 
-    way = shortest_way(curve, a%z, start%z)
-    distance = dot_product(way, a%direction)
-    found = distance > 0.0_wp .and. distance <= length .and. norm2(way - distance*a%direction) < most_departure*length
-    if (.not. found) return
-    ! the plane goes through the start, so that a curve which comes back meets it there
-    normal = matmul(a%direction, a%slopes)
-    call correct(curve, a, normal, dot_product(normal, way(a%place)), way(a%place), point, correction)
-    found = correction%done
-    if (found) call set_direction(point, a%direction, found)
-    if (found) found = norm2(shortest_way(curve, point%z, start%z)) < same_point .and. &
-                       dot_product(point%direction, start%direction) > same_direction
-    if (.not. found) return
-    branch%ends(2)%reason = ends_closed
-    branch%ends(2)%turns = (a%z + way - start%z)
+    associate (a => stride%from)
+      way = shortest_way(curve, a%z, start%z)
+      distance = dot_product(way, a%direction)
+      found = distance > 0.0_wp .and. distance <= stride%length .and. &
+              norm2(way - distance*a%direction) < most_departure*stride%length
+      if (.not. found) return
+      ! the plane goes through the start, so that a curve which comes back meets it there
+      normal = matmul(a%direction, a%slopes)
+      call correct(curve, a, normal, dot_product(normal, way(a%place)), way(a%place), point, correction)
+      found = correction%done
+      if (found) call set_direction(point, a%direction, found)
+      if (found) found = norm2(shortest_way(curve, point%z, start%z)) < same_point .and. &
+                         dot_product(point%direction, start%direction) > same_direction
+      if (.not. found) return
+      branch%ends(2)%reason = ends_closed
+      branch%ends(2)%turns = (a%z + way - start%z)
+    end associate
     where (curve%period > 0.0_wp)
       branch%ends(2)%turns = anint(branch%ends(2)%turns/curve%period)
     elsewhere

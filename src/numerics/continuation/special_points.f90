@@ -7,8 +7,16 @@ module mech9_special_points
   use mech9_curve_step, only: correction_type, correct_along, set_direction, branch_test
   implicit none
   private
-  public :: regular, fold, branching, hopf, period_doubling, torus, range_end, test_of, locate, growing_pairs, locate_hopf, &
-    growing_reals, locate_crossings
+  public :: regular, fold, branching, hopf, period_doubling, torus, range_end, curve_stride_type, test_of, locate, growing_pairs, &
+    locate_hopf, growing_reals, locate_crossings
+
+  !> A step along a curve, between two of its points.
+  type :: curve_stride_type
+    type(curve_point_type) :: from        !< the point before, with its direction
+    type(curve_point_type) :: to          !< the point behind
+    type(verdict_type) :: before          !< of the point before
+    real(wp) :: length = 0.0_wp           !< distance of the point behind along this direction
+  end type curve_stride_type
 
   !> The end of the range in which solutions have a meaning, which no table has.
   integer, parameter :: range_end = 6
@@ -39,10 +47,9 @@ contains
   end function test_of
 
   !> Locate a zero of a test, to round-off, but for branch points.
-  subroutine locate(curve, from, length, kind, tests, distance, point, found)
+  subroutine locate(curve, stride, kind, tests, distance, point, found)
     class(curve_type), intent(inout) :: curve           !< the problem
-    type(curve_point_type), intent(in) :: from          !< point before, with its direction
-    real(wp), intent(in) :: length                      !< distance of the point behind along this direction
+    type(curve_stride_type), intent(in) :: stride       !< between the points before and behind
     integer, intent(in) :: kind                         !< of point
     real(wp), intent(in) :: tests(2)                    !< at both points, of different sign
     real(wp), intent(out) :: distance                   !< of the point along the direction
@@ -54,13 +61,13 @@ contains
     integer :: i
     logical :: reached
 
-    search = new_false_position(0.0_wp, -abs(tests(1)), length, abs(tests(2)))
+    search = new_false_position(0.0_wp, -abs(tests(1)), stride%length, abs(tests(2)))
     best = huge(best)
     place = 0.0_wp
     do i = 1, most_trials
       call search%next(place, reached)
       if (.not. reached) exit
-      call stand_at(curve, from, place, trial, reached)
+      call stand_at(curve, stride%from, place, trial, reached)
       if (.not. reached) exit
       value = -sign(1.0_wp, tests(1))*test_of(curve, kind, trial)
       if (abs(value) < best) then
@@ -104,10 +111,9 @@ contains
   end function growing_reals
 
   !> Locate the point at which several real roots begin or cease to grow, by bisection.
-  subroutine locate_crossings(curve, from, length, before, distance, point, found)
+  subroutine locate_crossings(curve, stride, before, distance, point, found)
     class(curve_type), intent(inout) :: curve           !< the problem
-    type(curve_point_type), intent(in) :: from          !< point before, with its direction
-    real(wp), intent(in) :: length                      !< distance of the point behind along this direction
+    type(curve_stride_type), intent(in) :: stride       !< between the points before and behind
     integer, intent(in) :: before                       !< number of real roots that grow at the point before
     real(wp), intent(out) :: distance                   !< of the point along the direction
     type(curve_point_type), intent(inout) :: point      !< with its direction
@@ -118,11 +124,11 @@ contains
     integer :: i
 
     low = 0.0_wp
-    distance = length
+    distance = stride%length
     do i = 1, most_trials
       if (distance - low <= round_off_step) exit
       middle = 0.5_wp*(low + distance)
-      call stand_at(curve, from, middle, trial, found)
+      call stand_at(curve, stride%from, middle, trial, found)
       if (.not. found) exit
       call curve%judge(trial, verdict)
       if (growing_reals(verdict) == before) then
@@ -132,7 +138,7 @@ contains
         point = trial
       end if
     end do
-    found = distance < length
+    found = distance < stride%length
   end subroutine locate_crossings
 
   !> Whether a root is one of a conjugate pair.
@@ -144,10 +150,9 @@ contains
 
   !> Locate a Hopf point, where a pair of roots crosses the imaginary axis, between points with different numbers of growing pairs. Where
   !> two pairs without damping meet and part again, the point is where they meet. A pair that becomes real roots is none.
-  subroutine locate_hopf(curve, from, length, pairs, distance, point, found)
+  subroutine locate_hopf(curve, stride, pairs, distance, point, found)
     class(curve_type), intent(inout) :: curve           !< the problem
-    type(curve_point_type), intent(in) :: from          !< point before, with its direction
-    real(wp), intent(in) :: length                      !< distance of the point behind along this direction
+    type(curve_stride_type), intent(in) :: stride       !< between the points before and behind
     integer, intent(in) :: pairs(2)                     !< number of growing pairs at both points
     real(wp), intent(out) :: distance                   !< of the point along the direction
     type(curve_point_type), intent(inout) :: point      !< with its direction
@@ -158,7 +163,7 @@ contains
     integer :: i, now
 
     low = 0.0_wp
-    high = length
+    high = stride%length
     distance = high
     values = 0.0_wp
     sense = sign(1.0_wp, real(pairs(2) - pairs(1), wp))
@@ -177,7 +182,7 @@ contains
         distance = high
       end if
     end do
-    found = allocated(point%z) .and. distance < length
+    found = allocated(point%z) .and. distance < stride%length
     if (values(1) < 0.0_wp .and. values(2) > 0.0_wp) then
       search = new_false_position(low, values(1), high, values(2))
       do i = 1, most_trials
@@ -204,7 +209,7 @@ contains
       integer :: k
 
       place = at
-      call stand_at(curve, from, at, trial, found)
+      call stand_at(curve, stride%from, at, trial, found)
       if (.not. found) return
       call curve%judge(trial, verdict)
       now = growing_pairs(verdict)

@@ -76,7 +76,7 @@ contains
     call find_columns(model, model%parameters(number), requests, found)
     allocate (found%rows(found%columns%count, 0))
     do i = 1, size(requests)
-      call follow(model, variable, number, requests(i), i, found, err, interruption)
+      call follow(model, variable, number, requests(i), found, err, interruption)
       if (allocated(err)) return
     end do
   end subroutine find_branches
@@ -238,12 +238,11 @@ contains
   end subroutine refuse_parts
 
   !> Follow the branches that one group asks for.
-  subroutine follow(model, variable, number, request, group, found, err, interruption)
+  subroutine follow(model, variable, number, request, found, err, interruption)
     type(model_type), intent(in) :: model                            !< the model
     class(variable_model_type), intent(inout), target :: variable    !< the model as a function of its parameters
     integer, intent(in) :: number                                    !< of the parameter
     type(branch_request_type), intent(in) :: request                 !< the group
-    integer, intent(in) :: group                                     !< its number
     type(branches_found_type), intent(inout) :: found                !< gets the branches
     type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
     class(interruption_type), intent(in), optional :: interruption   !< is asked whether the work shall stop
@@ -256,9 +255,9 @@ contains
     call new_single_parameter(variable, model, number, single)
     if (request%of == 'periodic') then
       allocate (motions)
-      call begin_motions(model, single, model%parameters(number)%value, request, motions, start, err, interruption)
-      if (.not. allocated(err)) &
-        call trace(model, motions, motions%range, motions%unit, start, request, group, found, err)
+      if (present(interruption)) allocate (motions%interruption, source=interruption)
+      call begin_motions(model, single, model%parameters(number)%value, request, motions, start, err)
+      if (.not. allocated(err)) call trace(model, motions, motions%unit, start, request, found, err)
       call motions%map%close()
       deallocate (motions)
     else
@@ -266,7 +265,7 @@ contains
       call begin(model, single, model%parameters(number)%value, request, positions, start, err)
       if (.not. allocated(err)) then
         if (present(interruption)) allocate (positions%interruption, source=interruption)
-        call trace(model, positions, positions%range, positions%plan%unit_of, start, request, group, found, err)
+        call trace(model, positions, positions%plan%unit_of, start, request, found, err)
       end if
       deallocate (positions)
     end if
@@ -274,14 +273,12 @@ contains
   end subroutine follow
 
   !> Trace the branches from a start. Fails where several begin there, and with exit_interrupted where the work is stopped.
-  subroutine trace(model, curve, range, unit, start, request, group, found, err)
+  subroutine trace(model, curve, unit, start, request, found, err)
     type(model_type), intent(in) :: model                      !< the model
     class(curve_type), intent(inout) :: curve                  !< the problem
-    real(wp), intent(in) :: range                              !< of the parameter, in the units of the data file
     real(wp), intent(in) :: unit(:)                            !< (M or more) of the coordinates [rad, m]
     type(curve_point_type), intent(inout) :: start             !< the first point
     type(branch_request_type), intent(in) :: request           !< the group
-    integer, intent(in) :: group                               !< its number
     type(branches_found_type), intent(inout) :: found          !< gets the branches
     type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
     type(curve_settings_type) :: settings
@@ -296,35 +293,33 @@ contains
     end if
     settings%step = request%step
     settings%points = request%points
-    settings%low = request%low/range
-    settings%high = request%high/range
+    settings%low = request%low/(request%high - request%low)
+    settings%high = request%high/(request%high - request%low)
     call find_curve_branches(curve, start, request%switch, settings, branches, left_out, not_doubled)
     found%left_out = found%left_out + left_out
     found%not_doubled = found%not_doubled + not_doubled
     found%low = [found%low, request%low]
     found%high = [found%high, request%high]
     found%of = [character(len=11) :: found%of, request%of]
-    call put_rows(model, curve%m, range, unit, request%of == 'periodic', branches, size(found%branches), found)
-    found%groups = [found%groups, spread(group, 1, size(branches))]
+    call put_rows(model, request, curve%m, unit, branches, found)
+    found%groups = [found%groups, spread(size(found%of), 1, size(branches))]
     found%branches = [found%branches, branches]
     if (any([branches%ends(1)%reason, branches%ends(2)%reason] == ends_stopped)) &
       call raise(err, exit_interrupted, 'interrupted; the branches that were found until then are written')
   end subroutine trace
 
   !> Find the periodic motion at which branches begin. Fails where there is none.
-  subroutine begin_motions(model, single, value, request, curve, start, err, interruption)
+  subroutine begin_motions(model, single, value, request, curve, start, err)
     type(model_type), intent(in) :: model                            !< the model
     type(single_parameter_type), intent(in), target :: single        !< the model as a function of the parameter
     real(wp), intent(in) :: value                                    !< of the parameter
     type(branch_request_type), intent(in) :: request                 !< the group
-    type(periodic_curve_type), intent(inout) :: curve                !< gets the problem
+    type(periodic_curve_type), intent(inout) :: curve                !< gets the problem; whom it asks is known
     type(curve_point_type), intent(inout) :: start                   !< gets the first point
     type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
-    class(interruption_type), intent(in), optional :: interruption   !< is asked whether the work shall stop
     type(periodic_found_type) :: found
 
-    if (present(interruption)) allocate (curve%interruption, source=interruption)
-    call find_periodic(model, found, err, interruption)
+    call find_periodic(model, found, err, curve%interruption)
     if (.not. allocated(err)) call refuse_family(found%motions(1), 'the branch follows', request, err)
     if (.not. allocated(err)) &
       call begin_periodic_curve(single, model, found%motions(1), value, request%high - request%low, curve, start, err)
@@ -401,14 +396,12 @@ contains
   end subroutine begin_at_rest
 
   !> Put the points of branches into rows of the table.
-  subroutine put_rows(model, last, range, unit, are_motions, branches, before, found)
+  subroutine put_rows(model, request, last, unit, branches, found)
     type(model_type), intent(in) :: model                  !< the model
+    type(branch_request_type), intent(in) :: request       !< the group
     integer, intent(in) :: last                            !< component of an image that is the parameter
-    real(wp), intent(in) :: range                          !< its range, in the units of the data file
     real(wp), intent(in) :: unit(:)                        !< (M or more) of the coordinates [rad, m], ..., of a period of motions' own [s]
-    logical, intent(in) :: are_motions                     !< periodic motions, else positions
     type(curve_branch_type), intent(in) :: branches(:)     !< its branches
-    integer, intent(in) :: before                          !< number of branches before them
     type(branches_found_type), intent(inout) :: found      !< gets the rows
     real(wp) :: row(found%columns%count)
     real(wp), allocatable :: rows(:, :)
@@ -421,12 +414,12 @@ contains
     at = n
     do b = 1, size(branches)
       do i = 1, branches(b)%count
-        row(1:2) = [real(before + b, wp), real(i, wp)]
-        row(3) = branches(b)%z(last, i)*range
+        row(1:2) = [real(size(found%branches) + b, wp), real(i, wp)]
+        row(3) = branches(b)%z(last, i)*(request%high - request%low)
         row(4:3 + m) = branches(b)%z(:m, i)*unit(:m)
         if (found%growth > 0) row(found%growth) = branches(b)%growth(i)
         if (found%period > 0) row(found%period) = ieee_value(1.0_wp, ieee_quiet_nan)
-        if (found%period > 0 .and. are_motions) row(found%period) = branches(b)%z(last - 1, i)*unit(last - 1)
+        if (found%period > 0 .and. request%of == 'periodic') row(found%period) = branches(b)%z(last - 1, i)*unit(last - 1)
         row(size(row)) = branches(b)%kind(i)
         call found%columns%convert(row)
         at = at + 1

@@ -21,7 +21,8 @@ module mech9_contact_equations
   use mech9_motion_view, only: link_motion_type
   use mech9_contact, only: contact_place_type
   use mech9_stop_contacts, only: stop_contact_type
-  use mech9_contact_motion, only: contact_rows_type, find_contact_rows, place_of_contact, acceleration_of_contact
+  use mech9_contact_motion, only: contact_rows_type, choose_contacts, find_contact_rows, place_of_contact, &
+    acceleration_of_contact
   use mech9_jacobian, only: rates_by_independent
   use mech9_lagrange, only: find_equations
   use mech9_motion_system, only: motion_system_type
@@ -76,8 +77,8 @@ contains
       ! pairs that stick do not resist impacts
       if (allocated(system%friction)) may_move(system%friction%held) = .true.
       links = pack([(i, i=1, size(contacts))], contacts%contact > 0)
-      call find_contact_rows(system%model%mechanism, contacts(links)%contact, plan, system%dynamics, state, system%work, &
-                             may_move(plan%independent), of_links, err)
+      call choose_contacts(contacts(links)%contact, may_move(plan%independent), of_links)
+      call find_contact_rows(system%model%mechanism, plan, system%dynamics, state, system%work, of_links, err)
       if (allocated(err)) then
         i = err%failure%coordinates(1)
         call raise(err, exit_singular, failure_singular_contact)

@@ -7,6 +7,7 @@
 !> of accelerations alone would let them drift.
 module mech9_contact_motion
   use mech9_kinds, only: wp
+  use mech9_masks, only: numbers_of
   use mech9_error, only: error_type, raise, exit_data, exit_integrator
   use mech9_dynamics_failures, only: failure_no_inertia
   use mech9_integration_failures, only: failure_contact_paradox
@@ -25,12 +26,13 @@ module mech9_contact_motion
   use mech9_lagrange, only: find_equations
   implicit none
   private
-  public :: contact_motion_type, contact_rows_type, begin_contact_motion, find_contact_motion, find_contact_rows, &
-    find_acting_rows, press, constrain, show_forces, place_of_contact, acceleration_of_contact, correct_positions, &
-    correct_rates, note_slip
+  public :: contact_motion_type, contact_rows_type, begin_contact_motion, find_contact_motion, choose_contacts, &
+    find_contact_rows, find_acting_rows, press, constrain, show_forces, place_of_contact, acceleration_of_contact, &
+    correct_positions, correct_rates, note_slip
 
   !> The equations of some contacts in the coordinates that move.
   type :: contact_rows_type
+    integer, allocatable :: acting(:)              !< (contacts) numbers of the contacts
     integer, allocatable :: moving(:)              !< places among the independent coordinates of those that move
     real(wp), allocatable :: factors(:, :)         !< Cholesky factors of their mass matrix
     type(contact_place_type), allocatable :: places(:)   !< (contacts)
@@ -39,7 +41,6 @@ module mech9_contact_motion
     real(wp), allocatable :: answers(:, :, :)      !< (moving,3,contacts) accelerations by unit forces along them
     real(wp), allocatable :: speeds(:)             !< (contacts) sum of the speeds from which the slip comes [m/s]
     real(wp), allocatable :: given(:, :)           !< (3,contacts) accelerations along these axes that rates alone give [m/s^2]
-    integer, allocatable :: acting(:)              !< (contacts) their numbers, of those that act
   end type contact_rows_type
 
   !> How contacts act in a motion.
@@ -126,22 +127,29 @@ contains
     acceleration = contact%acceleration(place, ball, surface, a_center, alpha_ball, a_surface, alpha_surface)
   end function acceleration_of_contact
 
-  !> Find the equations of some contacts, in a state whose equations of motion are found.
-  subroutine find_contact_rows(mechanism, numbers, plan, dynamics, state, work, moves, equations, err)
-    type(mechanism_type), intent(in) :: mechanism         !< the mechanism
+  !> Choose the contacts and the coordinates of equations, which are then found.
+  pure subroutine choose_contacts(numbers, moves, equations)
     integer, intent(in) :: numbers(:)                     !< of the contacts
+    logical, intent(in) :: moves(:)                       !< (independent) no drive moves the coordinate
+    type(contact_rows_type), intent(out) :: equations     !< of these contacts, still without numbers
+
+    equations%acting = numbers
+    equations%moving = numbers_of(moves)
+  end subroutine choose_contacts
+
+  !> Find the equations of contacts that are chosen, in a state whose equations of motion are found.
+  subroutine find_contact_rows(mechanism, plan, dynamics, state, work, equations, err)
+    type(mechanism_type), intent(in) :: mechanism         !< the mechanism
     type(plan_type), intent(in) :: plan                   !< the plan of the mechanism
     type(dynamics_plan_type), intent(in) :: dynamics      !< its plan of dynamics
     type(state_type), intent(in) :: state                 !< the state, with the velocities of links
     type(lagrange_work_type), intent(in) :: work          !< with the coefficients of motion and the Jacobian
-    logical, intent(in) :: moves(:)                       !< (independent) no drive moves the coordinate
-    type(contact_rows_type), intent(out) :: equations     !< their equations
+    type(contact_rows_type), intent(inout) :: equations   !< of the chosen contacts
     type(error_type), allocatable, intent(out) :: err     !< allocated if a coordinate has no inertia
     type(link_motion_type) :: ball, surface
     real(wp) :: all_rows(size(plan%independent), 3)
     integer :: i, j, n, failed_at
 
-    equations%moving = pack([(i, i=1, size(plan%independent))], moves)
     n = size(equations%moving)
     allocate (equations%factors(n, n))
     do j = 1, n
@@ -157,23 +165,23 @@ contains
       err%failure%coordinates = [plan%independent(equations%moving(failed_at))]
       return
     end if
-    allocate (equations%places(size(numbers)), equations%axes(3, 3, size(numbers)), equations%rows(n, 3, size(numbers)), &
-              equations%speeds(size(numbers)))
-    do i = 1, size(numbers)
-      associate (place => equations%places(i), axes => equations%axes(:, :, i))
-        call place_of_contact(mechanism%contacts(numbers(i)), plan, state, place, ball, surface)
+    allocate (equations%places(size(equations%acting)), equations%axes(3, 3, size(equations%acting)), &
+              equations%rows(n, 3, size(equations%acting)), equations%speeds(size(equations%acting)))
+    do i = 1, size(equations%acting)
+      associate (place => equations%places(i), axes => equations%axes(:, :, i), contact => mechanism%contacts(equations%acting(i)))
+        call place_of_contact(contact, plan, state, place, ball, surface)
         axes(:, 1) = place%normal
         axes(:, 2:3) = place%tangents()
         all_rows = 0.0_wp
-        call add_link(mechanism%contacts(numbers(i))%links(1), 1.0_wp)
-        call add_link(mechanism%contacts(numbers(i))%links(2), -1.0_wp)
+        call add_link(contact%links(1), 1.0_wp)
+        call add_link(contact%links(2), -1.0_wp)
         equations%rows(:, :, i) = all_rows(equations%moving, :)
         ! a foot at rest has no speed, while those of the body and of its leg on the body cancel each other
         equations%speeds(i) = place%speed + sum(norm2(all_rows, dim=2)*abs(state%dq(plan%independent)))
       end associate
     end do
     equations%answers = equations%rows
-    do i = 1, size(numbers)
+    do i = 1, size(equations%acting)
       do j = 1, 3
         if (n > 0) call cholesky_solve(n, equations%factors, equations%answers(:, j, i))
       end do
@@ -215,7 +223,8 @@ contains
     self%forces = 0.0_wp
     call find_equations(mechanism, plan, dynamics, state, work, err)
     if (allocated(err)) return
-    call find_acting_rows(mechanism, plan, dynamics, state, work, .not. plan%driven(plan%independent), self, equations, err)
+    call choose_contacts(numbers_of(self%acts), .not. plan%driven(plan%independent), equations)
+    call find_acting_rows(mechanism, plan, dynamics, state, work, equations, err)
     if (allocated(err)) return
     associate (moving => equations%moving)
       work%accelerations = 0.0_wp
@@ -227,29 +236,25 @@ contains
     if (.not. allocated(err)) call show_forces(equations, self, state, work%forces)
   end subroutine find_contact_motion
 
-  !> Find the equations of the contacts that act, in a state whose equations of motion are found and that has no other accelerations than
+  !> Find the equations of chosen contacts that act, in a state whose equations of motion are found and that has no other accelerations than
   !> those by rates alone.
-  subroutine find_acting_rows(mechanism, plan, dynamics, state, work, moves, self, equations, err)
+  subroutine find_acting_rows(mechanism, plan, dynamics, state, work, equations, err)
     type(mechanism_type), intent(in) :: mechanism         !< the mechanism
     type(plan_type), intent(in) :: plan                   !< its plan
     type(dynamics_plan_type), intent(in) :: dynamics      !< its plan of dynamics
     type(state_type), intent(in) :: state                 !< the state
     type(lagrange_work_type), intent(in) :: work          !< with the coefficients of motion and the Jacobian
-    logical, intent(in) :: moves(:)                       !< (independent) no drive moves the coordinate
-    type(contact_motion_type), intent(in) :: self         !< the contacts, with their modes
-    type(contact_rows_type), intent(out) :: equations     !< the equations
+    type(contact_rows_type), intent(inout) :: equations   !< of the chosen contacts
     type(error_type), allocatable, intent(out) :: err     !< allocated if a coordinate has no inertia
-    integer, allocatable :: acting(:)
     integer :: i
 
-    acting = pack([(i, i=1, size(self%acts))], self%acts)
-    call find_contact_rows(mechanism, acting, plan, dynamics, state, work, moves, equations, err)
+    call find_contact_rows(mechanism, plan, dynamics, state, work, equations, err)
     if (allocated(err)) return
-    allocate (equations%given(3, size(acting)))
-    do i = 1, size(acting)
-      equations%given(:, i) = matmul(acceleration_of_contact(mechanism%contacts(acting(i)), plan, state), equations%axes(:, :, i))
+    allocate (equations%given(3, size(equations%acting)))
+    do i = 1, size(equations%acting)
+      equations%given(:, i) = matmul(acceleration_of_contact(mechanism%contacts(equations%acting(i)), plan, state), &
+                                     equations%axes(:, :, i))
     end do
-    call move_alloc(acting, equations%acting)
   end subroutine find_acting_rows
 
   !> Add to accelerations without contacts those by the forces of contacts, which they determine.
@@ -487,12 +492,12 @@ contains
     logical :: depends
 
     corrected = .false.
-    closed = pack([(i, i=1, size(self%acts))], self%acts .and. mechanism%contacts%is_rigid)
+    closed = numbers_of(self%acts .and. mechanism%contacts%is_rigid)
     if (size(closed) == 0) return
     call find_equations(mechanism, plan, dynamics, state, work, err)
     if (allocated(err)) return
-    call find_contact_rows(mechanism, closed, plan, dynamics, state, work, .not. plan%driven(plan%independent), &
-                           equations, err)
+    call choose_contacts(closed, .not. plan%driven(plan%independent), equations)
+    call find_contact_rows(mechanism, plan, dynamics, state, work, equations, err)
     if (allocated(err)) return
     gaps = equations%places%gap
     if (maxval(abs(gaps)) <= closed_part*plan%length) return
@@ -530,12 +535,12 @@ contains
     integer :: i, j, m, c
     logical :: depends
 
-    acting = pack([(i, i=1, size(self%acts))], self%acts .and. (mechanism%contacts%is_rigid .or. self%sticks))
+    acting = numbers_of(self%acts .and. (mechanism%contacts%is_rigid .or. self%sticks))
     if (size(acting) == 0) return
     call find_equations(mechanism, plan, dynamics, state, work, err)
     if (allocated(err)) return
-    call find_contact_rows(mechanism, acting, plan, dynamics, state, work, .not. plan%driven(plan%independent), &
-                           equations, err)
+    call choose_contacts(acting, .not. plan%driven(plan%independent), equations)
+    call find_contact_rows(mechanism, plan, dynamics, state, work, equations, err)
     if (allocated(err)) return
     m = 0
     do i = 1, size(acting)

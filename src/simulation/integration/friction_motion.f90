@@ -17,7 +17,8 @@ module mech9_friction_motion
   use mech9_jacobian, only: rates_by_independent
   use mech9_lagrange, only: find_equations, complete_accelerations
   use mech9_friction_wrenches, only: friction_wrenches_type, prepare_friction_wrenches
-  use mech9_contact_motion, only: contact_motion_type, contact_rows_type, find_acting_rows, press, constrain, &
+  use mech9_masks, only: numbers_of
+  use mech9_contact_motion, only: contact_motion_type, contact_rows_type, choose_contacts, find_acting_rows, press, constrain, &
     show_forces
   use mech9_friction_balance, only: friction_balance_type, friction_modes_type, new_friction_balance, new_friction_modes
   implicit none
@@ -185,7 +186,8 @@ contains
       if (.not. self%touches) return
       if (.not. allocated(self%pressed)) &
         allocate (self%pressed(3, size(mechanism%contacts), 0:size(mechanism%frictions)), source=0.0_wp)
-      call find_acting_rows(mechanism, plan, dynamics, state, work, self%moves, contact, self%touching, err)
+      call choose_contacts(numbers_of(contact%acts), self%moves, self%touching)
+      call find_acting_rows(mechanism, plan, dynamics, state, work, self%touching, err)
     end subroutine begin_contacts
 
     !> Add to accelerations without contacts those by their forces, and keep these forces.

@@ -27,7 +27,7 @@ module mech9_varied_contacts
   use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type
   use mech9_varied_motion, only: varied_motion_type, link_twists
   use mech9_motion_sensitivity, only: motion_sensitivity_type
-  use mech9_contact_motion, only: contact_motion_type, contact_rows_type, find_contact_rows
+  use mech9_contact_motion, only: contact_motion_type, contact_rows_type, choose_contacts, find_contact_rows
   implicit none
   private
   public :: contact_variation_type, vary_contact, varied_numbers, find_varied_contacts
@@ -245,8 +245,8 @@ contains
       if (.not. allocated(motion%contact)) allocate (motion%contact(motion%n_parameters, 3*size(contacts)))
       motion%contact = 0.0_wp
       if (n == 0) return
-      call find_contact_rows(model%mechanism, acting, plan, dynamics, state, work, .not. plan%driven(plan%independent), &
-                             equations, err)
+      call choose_contacts(acting, .not. plan%driven(plan%independent), equations)
+      call find_contact_rows(model%mechanism, plan, dynamics, state, work, equations, err)
       if (.not. allocated(err)) call sensitivity%complete(model, state, err)
       if (allocated(err)) return
       allocate (variations(n), known(3, n), lines(3, 3*n), of_contact(3*n), along(3*n))
