@@ -273,7 +273,8 @@ def test_a_drive_forces_a_stop(checks, mech9d, mech9k, tmp_path):
     for text in (idle, idle + '&gravity acceleration=0,-9.81,0 /\n', beside):
         table, _, told = go(mech9d, tmp_path, text, 1.0, code=6)
         checks.true('beyond the end of stop 1 at 0.5 m from t = 0.5 s on, with the rate -1 m/s' in told, 'others are free', told)
-    checks.near(table['t'][-1], 0.5, 0.06, 'rows before are kept')
+        # round-off decides whether the row at t = 0.5 is one of those before
+        checks.near(table['t'][-1], 0.475, 0.026/0.475, 'rows before are kept')
 
 
 def test_compliant_stops(checks, mech9d, tmp_path):

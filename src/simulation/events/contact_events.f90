@@ -365,8 +365,8 @@ contains
           if (restitution(i) >= 1.0_wp) cycle
           time = 2.0_wp*rates(i)/(-outcome%accelerations(i)*(1.0_wp - restitution(i)))
           height = -0.5_wp*rates(i)**2/outcome%accelerations(i)
-          ! rebounds within the round-off of the coordinate are not impacts
-          if (height > 64.0_wp*spacing(ends(i)%limit) .and. &
+          ! rebounds within the round-off of the gap are not impacts
+          if (height > 64.0_wp*max(spacing(ends(i)%limit), ends(i)%round_off(system%plan, system%state)) .and. &
               (height > least_rebound*ends(i)%unit(system%plan) .or. time > endless_part*duration)) cycle
           ends_after(i) = time
           restitution(i) = 0.0_wp

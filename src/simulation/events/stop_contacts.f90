@@ -34,6 +34,7 @@ module mech9_stop_contacts
     procedure :: group
     procedure :: number
     procedure :: unit
+    procedure :: round_off
   end type stop_contact_type
 
   !> All ends of all stops, and their motion at the start of a step.
@@ -95,6 +96,17 @@ contains
     unit = plan%length
     if (self%contact == 0) unit = plan%unit_of(self%coordinate)
   end function unit
+
+  !> Round-off of the gap by that of the coordinates, and by that of the time, in which drives move on [rad, m].
+  pure real(wp) function round_off(self, plan, state)
+    class(stop_contact_type), intent(in) :: self   !< the end
+    type(plan_type), intent(in) :: plan            !< the plan of the mechanism
+    type(state_type), intent(in) :: state          !< the state, with all rates
+    real(wp) :: by_time
+
+    by_time = spacing(state%t)*maxval(abs(state%dq)/plan%unit_of, mask=plan%driven)
+    round_off = self%unit(plan)*max(by_time, maxval(spacing(state%q)/plan%unit_of), 0.0_wp)
+  end function round_off
 
   !> The gap in a state, and its rate; that needs the velocities of links.
   pure function gap_motion(mechanism, plan, state, end) result(motion)

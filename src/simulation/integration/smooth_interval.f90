@@ -72,7 +72,8 @@ contains
     end subroutine take_law
   end subroutine begin
 
-  !> A time at which laws have the derivatives of the interval: at its ends a little more than round-off inside.
+  !> A time at which laws have the derivatives of the interval: at its ends a little more than round-off inside. At the time of an event
+  !> without a joint laws are smooth: times moved there would open a gap between what drives move and what moves freely.
   pure real(wp) function time_inside(self, t)
     class(smooth_interval_type), intent(in) :: self   !< the interval
     real(wp), intent(in) :: t                         !< time within the interval, or at one of its ends [s]
@@ -83,7 +84,7 @@ contains
     direction = sign(1.0_wp, self%ahead - self%behind)
     first = from_inside(self%behind, direction)
     last = self%ahead
-    if (abs(last) < huge(last)) last = from_inside(last, -direction)
+    if (self%is_joint(last)) last = from_inside(last, -direction)
     if ((t - first)*direction < 0.0_wp) time_inside = first
     if ((last - t)*direction < 0.0_wp) time_inside = last
   end function time_inside
