@@ -239,7 +239,7 @@ contains
     if (self%levels%is_near(side)) then
       do i = self%last%derivatives, 1, -1
         if (abs(self%last%numbers(i)) > 0.0_wp) &
-          side = self%last%numbers(0) + sign(2.0_wp*self%levels%round_off, self%last%numbers(i)*self%direction**i)
+          side = self%last%numbers(0) + sign(max(2.0_wp*self%levels%round_off, tiny(side)), self%last%numbers(i)*self%direction**i)
       end do
     end if
     self%cell = self%levels%cell(side)
@@ -322,12 +322,13 @@ contains
     self%cell = self%last_cell
   end subroutine take_passings
 
-  !> Whether a passing is a point of the section.
+  !> Whether a passing is a point of the section. At the start itself, a value without known derivatives does not tell from which side it
+  !> comes.
   pure logical function is_wanted(self, passing)
     class(section_record_type), intent(in) :: self   !< the record
     type(passing_type), intent(in) :: passing        !< the passing
 
-    is_wanted = abs(passing%t - self%start) >= self%wanted%transient
+    is_wanted = abs(passing%t - self%start) >= max(self%wanted%transient, tiny(passing%t))
     if (self%wanted%direction /= 0) &
       is_wanted = is_wanted .and. (passing%behind - passing%before)*self%wanted%direction*self%direction > 0.0_wp
   end function is_wanted
