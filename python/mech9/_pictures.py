@@ -8,6 +8,11 @@ import re
 import tempfile
 from typing import Callable
 
+from ._errors import UsageError
+
+# endings of names that tell programs how to read a picture
+KINDS_OF_PICTURES = ('.svg', '.html', '.gif', '.mp4', '.png', '.jpg', '.jpeg', '.webp', '.pdf', '.eps')
+
 
 class Picture:
     """A drawing or a film as the text of its file. A notebook shows it; `save` writes it."""
@@ -17,7 +22,10 @@ class Picture:
         self.kind = kind   # svg, html, gif or mp4
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the picture to a file."""
+        """Write the picture to a file, whose name may end with its kind, as .svg, and not with that of another picture."""
+        end = os.path.splitext(os.fspath(path))[1].lower()
+        if end in KINDS_OF_PICTURES and end != f'.{self.kind}':
+            raise UsageError(f'this picture is of the kind {self.kind}; give a name that ends with .{self.kind}, not with {end}', 2)
         with open(path, 'wb') as file:
             file.write(self.content)
 

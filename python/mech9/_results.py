@@ -182,11 +182,11 @@ class Results(Mapping[str, np.ndarray]):
         axes = figure.add_subplot()
         if len(columns) == 2 and 't' not in columns:
             axes.plot(self[columns[0]], self[columns[1]])
-            axes.set_xlabel(f'{columns[0]} [{self.units[columns[0]]}]')
-            axes.set_ylabel(f'{columns[1]} [{self.units[columns[1]]}]')
+            axes.set_xlabel(f'{columns[0]} [{self._unit_of(columns[0])}]')
+            axes.set_ylabel(f'{columns[1]} [{self._unit_of(columns[1])}]')
         else:
             for name in columns:
-                axes.plot(self.t, self[name], label=f'{name} [{self.units[name]}]')
+                axes.plot(self.t, self[name], label=f'{name} [{self._unit_of(name)}]')
             axes.set_xlabel(f't [{self.units["t"]}]')
             self._mark_events(axes)
             axes.legend()
@@ -210,8 +210,14 @@ class Results(Mapping[str, np.ndarray]):
         except KeyError:
             raise KeyError(f'there is no column {name!r}; the columns are {", ".join(self.names)}') from None
 
+    def _unit_of(self, name: str) -> str:
+        """The unit of a column, also where it is called by the name of a pair or a link."""
+        return self.units[name if name in self._columns else self._numbered(name)]
+
     def _numbered(self, name: str) -> str:
         """The name of a column by numbers, where it has that of a pair or a link: B.q is q2, B.fx is R2.fx, rod.phi is L3.phi."""
+        if not isinstance(name, str):
+            return name
         part, _, end = name.partition('.')
         report = self.report
         pairs, links = report.get('coordinate_names', []), report.get('link_names', [])
@@ -468,7 +474,8 @@ class Branches(Mapping[str, np.ndarray]):
             pairs = np.where(shown, np.arange(len(shown)), -1)
             lines = [np.array([self[name][pairs], self[name][pairs + 1], np.full(len(shown), np.nan)]).T[shown].ravel() for name in (x, y)]
             axes.plot(*lines, style, color='C1' if unstable else 'C0', label='unstable' if unstable else 'stable')
-        for kind, marker, label in ((1, 'o', 'fold'), (2, 's', 'branch point'), (3, '^', 'Hopf point')):
+        for kind, marker, label in ((1, 'o', 'fold'), (2, 's', 'branch point'), (3, '^', 'Hopf point'), (4, 'D', 'period doubling'),
+                                    (5, 'v', 'torus')):
             rows = self['type'] == kind
             if rows.any():
                 axes.plot(self[x][rows], self[y][rows], marker, color='black', label=label)

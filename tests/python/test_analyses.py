@@ -49,6 +49,8 @@ def test_columns_share_memory(mech9, four_bar):
         column[0] = 1.0
     with pytest.raises(KeyError, match='there is no column'):
         four_bar.kinematics()['q9']
+    with pytest.raises(KeyError, match='there is no column 0'):
+        four_bar.kinematics()[0]
 
 
 def test_units_and_degrees(mech9, four_bar):
@@ -369,8 +371,14 @@ def test_cams(checks, build, mech9, tmp_path):
         m.cam(3)
 
 
-def test_pictures(mech9, four_bar):
+def test_pictures(mech9, four_bar, tmp_path):
     drawing = four_bar.sketch()
+    for name in ('drawing.svg', 'drawing', 'Drawing.SVG', 'drawing.v2'):
+        drawing.save(tmp_path / name)
+        assert (tmp_path / name).read_bytes() == drawing.content
+    with pytest.raises(mech9.UsageError, match='of the kind svg; give a name that ends with .svg, not with .png'):
+        drawing.save(tmp_path / 'drawing.png')
+    assert not (tmp_path / 'drawing.png').exists()
     assert drawing.text.startswith('<?xml') and four_bar._repr_html_().startswith('<svg')
     results = four_bar.kinematics(intervals=5)
     assert results.animate().text.lstrip().lower().startswith('<!doctype html')

@@ -1,4 +1,7 @@
 """Names of links and pairs, and parameters that are formulas, in the package."""
+import sys
+import types
+
 import numpy as np
 import pytest
 
@@ -44,6 +47,27 @@ def test_columns_by_names(checks, mech9):
     for wrong in ('E.q', 'crank.q', 'D.x', '.q', 'D.'):
         with pytest.raises(KeyError):
             r[wrong]
+
+
+def test_plots_by_names(checks, mech9, monkeypatch):
+    """A column that has the name of its pair is drawn with its unit. A stand-in for matplotlib keeps what it is asked to draw."""
+    asked = []
+
+    class Axes:
+        """Axes that keep the labels."""
+        def plot(self, *values, label=''):
+            asked.append(label)
+
+        def __getattr__(self, name):
+            return lambda *values, **words: asked.extend(values if name.endswith('label') else [])
+
+    figure = types.SimpleNamespace(Figure=lambda: types.SimpleNamespace(add_subplot=Axes))
+    monkeypatch.setitem(sys.modules, 'matplotlib', types.SimpleNamespace(figure=figure))
+    monkeypatch.setitem(sys.modules, 'matplotlib.figure', figure)
+    r = mech9.read_text(GROUPS).kinematics(end=0.1, intervals=4)
+    r.plot('D.q')
+    r.plot('A.q', 'D.dq')
+    checks.equal(asked, ['D.q [rad]', 't [s]', '', 'A.q [rad]', 'D.dq [rad/s]'], 'labels')
 
 
 def test_groups_may_come_before_their_names(checks, mech9):
