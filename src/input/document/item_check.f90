@@ -196,7 +196,8 @@ contains
     if (known_word(value%text, row)) return
     word = printable(value%text, 40)
     hint = trim(own_name(lower(word), row%words))
-    if (hint == '') hint = nearest_name(word, words_of(row%words))
+    ! letters in common do not make cm a misspelt m
+    if (hint == '' .and. len(word) > 2) hint = nearest_name(word, words_of(row%words))
     if (hint == '') then
       hint = '; it is one of: '//trim(row%words)
     else
