@@ -13,7 +13,6 @@ module mech9_checking
   use mech9_start_path, only: start_way_type
   use mech9_explained_assembly, only: assemble_model
   use mech9_start_way_text, only: start_way_text
-  use mech9_task, only: task_type
   use mech9_named_words, only: named_number
   use mech9_structure_text, only: print_mobility_report
   use mech9_draft_text, only: draft_text_type
@@ -30,16 +29,15 @@ contains
 
   !> Carry out the current check. Go on to the next question if it finds no error; otherwise offer the user a
   !> correction.
-  subroutine check(conversation, task)
+  subroutine check(conversation)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
-    class(task_type), intent(in) :: task                     !< computation of the program: kinematics or dynamics
     type(question_type) :: question
 
     question = conversation%interview%due()
     if (question%kind == check_structure) then
       call judge_structure(conversation)
     else
-      call judge_start(conversation, task)
+      call judge_start(conversation)
     end if
   end subroutine check
 
@@ -67,9 +65,8 @@ contains
   end subroutine judge_structure
 
   !> Assemble the mechanism at the start, and tell the user the result.
-  subroutine judge_start(conversation, task)
+  subroutine judge_start(conversation)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
-    class(task_type), intent(in) :: task                     !< computation of the program: kinematics or dynamics
     type(model_type) :: model
     type(plan_type) :: plan
     type(state_type) :: start
@@ -80,7 +77,7 @@ contains
     type(error_type), allocatable :: err
     character(len=:), allocatable :: otherwise
 
-    call read_draft(conversation%interview%draft, conversation%draft_path, task%program, model, written, diagnostics)
+    call read_draft(conversation%interview%draft, conversation%draft_path, conversation%program, model, written, diagnostics)
     otherwise = 'guesses'
     if (.not. diagnostics%failed()) then
       call assemble_model(model, plan, start, err, way)

@@ -7,7 +7,6 @@ module mech9_converse
   use mech9_command_line, only: command_line_type
   use mech9_system, only: is_terminal, standard_input
   use mech9_diagnostics, only: diagnostics_type
-  use mech9_task, only: task_type
   use mech9_draft, only: draft_type
   use mech9_draft_file, only: load_draft, path_without_draft, stem_of_path
   use mech9_interview, only: most_parts
@@ -22,33 +21,31 @@ module mech9_converse
 contains
 
   !> Hold a conversation, and carry out its decision to save or to run. `code` is the exit code of the program.
-  subroutine converse(task, options, code)
-    class(task_type), intent(in) :: task            !< computation of the program: kinematics or dynamics
+  subroutine converse(options, code)
     type(command_line_type), intent(in) :: options  !< options of the command line
     integer, intent(out) :: code                    !< exit code of the program
     type(conversation_type) :: conversation
     character(len=:), allocatable :: run_path
 
-    call begin(conversation, task, options, code)
+    call begin(conversation, options, code)
     if (code /= exit_done) return
-    call conversation%input%open(program_names(task%program))
+    call conversation%input%open(program_names(options%program))
     run_path = ''
     do while (conversation%state == going)
-      call lead(conversation, task)
+      call lead(conversation)
       if (conversation%state == going) call close_conversation(conversation, run_path)
     end do
     if (run_path == '') then
       call take_leave(conversation, code)
     else
-      call run_by_turns(conversation, task, options, run_path, code)
+      call run_by_turns(conversation, options, run_path, code)
     end if
     call conversation%input%close()
   end subroutine converse
 
   !> Begin the conversation: read its files and greet the user.
-  subroutine begin(conversation, task, options, code)
+  subroutine begin(conversation, options, code)
     type(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
-    class(task_type), intent(in) :: task                    !< computation of the program: kinematics or dynamics
     type(command_line_type), intent(in) :: options          !< options of the command line
     integer, intent(out) :: code                            !< exit code of the program
     character(len=:), allocatable :: path, bookmark
@@ -56,7 +53,7 @@ contains
     type(diagnostics_type) :: diagnostics
 
     code = exit_done
-    conversation%program = task%program
+    conversation%program = options%program
     conversation%draft_path = ''
     conversation%stem = ''
     conversation%data_path = ''
@@ -80,11 +77,11 @@ contains
       ! a data file stays as it is until the end; the file of an interrupted conversation is continued
       if (bookmark /= '') conversation%draft_path = path
     end if
-    call greet(conversation, task%program, path)
+    call greet(conversation, options%program, path)
     if (draft%comments_left_out > 0) &
       call conversation%say('Comments inside and behind groups, '//to_text(draft%comments_left_out)// &
                             ' here, are not kept when it is saved.')
-    call conversation%interview%start(task%program, draft)
+    call conversation%interview%start(options%program, draft)
     if (path /= '') then
       conversation%interview%at = size(conversation%interview%questions)
       call conversation%interview%open_at(bookmark)

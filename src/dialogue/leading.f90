@@ -1,6 +1,5 @@
 !> Questions and checks of a conversation, one after the other.
 module mech9_leading
-  use mech9_task, only: task_type
   use mech9_questions, only: check_structure, check_start, check_all
   use mech9_conversation, only: conversation_type, going
   use mech9_asking, only: ask, announce_topic
@@ -12,9 +11,8 @@ module mech9_leading
 contains
 
   !> Ask questions and make checks until every question is answered or the user leaves.
-  subroutine lead(conversation, task)
+  subroutine lead(conversation)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
-    class(task_type), intent(in) :: task                     !< computation of the program: kinematics or dynamics
 
     do while (conversation%state == going)
       associate (question => conversation%interview%due())
@@ -23,7 +21,7 @@ contains
           return
         case (check_structure, check_start)
           call announce_topic(conversation, question)
-          call check(conversation, task)
+          call check(conversation)
         case default
           conversation%shown = .false.
           call ask(conversation)

@@ -8,7 +8,6 @@ module mech9_program
   use mech9_command_line, only: command_line_type, get_command_words, parse_command_line
   use mech9_system, only: exit_program, leave_quit_alone
   use mech9_session, only: carry_out, asks_for_text
-  use mech9_task, only: task_type
   use mech9_processes, only: processes_type
   use mech9_importing, only: import_robot
   use mech9_converse, only: converse
@@ -19,28 +18,28 @@ module mech9_program
 contains
 
   !> Run the whole program. There is no return from it.
-  subroutine run_program(task)
-    class(task_type), intent(in) :: task  !< computation of the program: kinematics or dynamics
+  subroutine run_program(program)
+    integer, intent(in) :: program             !< kinematics or dynamics
     integer :: code
 
     call leave_quit_alone()
-    call run_command_line(task, code)
+    call run_command_line(program, code)
     call exit_program(code)
   end subroutine run_program
 
   !> Carry out the command line. Its words are deallocated before the program ends.
-  subroutine run_command_line(task, code)
-    class(task_type), intent(in) :: task  !< computation of the program: kinematics or dynamics
+  subroutine run_command_line(program, code)
+    integer, intent(in) :: program             !< kinematics or dynamics
     integer, intent(out) :: code          !< exit code of the program
     type(string_type), allocatable :: words(:)
 
     call get_command_words(words)
-    call run_words(task, words, code)
+    call run_words(program, words, code)
   end subroutine run_command_line
 
   !> Carry out the words of a command line. `code` is the exit code of the program.
-  subroutine run_words(task, words, code)
-    class(task_type), intent(in) :: task       !< computation of the program: kinematics or dynamics
+  subroutine run_words(program, words, code)
+    integer, intent(in) :: program             !< kinematics or dynamics
     type(string_type), intent(in) :: words(:)  !< words of the command line without the program's name
     integer, intent(out) :: code               !< exit code of the program
     type(command_line_type) :: options
@@ -48,17 +47,17 @@ contains
     type(string_type), allocatable :: inputs(:)
     type(error_type), allocatable :: err
 
-    call parse_command_line(words, task%program, options, err)
+    call parse_command_line(words, program, options, err)
     if (allocated(err)) then
-      write (error_unit, '(3a)') program_names(task%program), ': ', err%message
+      write (error_unit, '(3a)') program_names(program), ': ', err%message
       code = err%code
     else if (options%has('import') .and. .not. asks_for_text(options)) then
       call options%arguments('import', inputs)
-      call import_robot(task%program, inputs, options%argument('out'), options%has('quiet'), code)
+      call import_robot(program, inputs, options%argument('out'), options%has('quiet'), code)
     else if (options%converses() .and. .not. asks_for_text(options)) then
-      call converse(task, options, code)
+      call converse(options, code)
     else
-      call carry_out(task, options, processes, code)
+      call carry_out(options, processes, code)
     end if
   end subroutine run_words
 end module mech9_program

@@ -9,7 +9,6 @@ module mech9_running
   use mech9_system, only: catch_interrupts, asked_to_end
   use mech9_kept_rows, only: kept_rows_type
   use mech9_rows_text, only: all_rows_text, digits_of_summary
-  use mech9_task, only: task_type
   use mech9_processes, only: processes_type
   use mech9_session, only: run_file
   use mech9_conversation, only: conversation_type, going, finished
@@ -23,9 +22,8 @@ module mech9_running
 contains
 
   !> Run a data file, and run it again as often as the user wants. `code` is that of the last run.
-  subroutine run_by_turns(conversation, task, options, path, code)
+  subroutine run_by_turns(conversation, options, path, code)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
-    class(task_type), intent(in) :: task                     !< computation of the program: kinematics or dynamics
     type(command_line_type), intent(in) :: options           !< options of the command line
     character(len=*), intent(in) :: path                     !< the data file of the conversation, or its draft
     integer, intent(out) :: code                             !< exit code of the last run
@@ -38,7 +36,7 @@ contains
     changed = .false.
     saved_again = .false.
     do
-      call run_file(task, options, path, processes, code, kept)
+      call run_file(options, path, processes, code, kept)
       found%count = 0
       if (asked_to_end()) exit
       ! Ctrl-C ends the run only, not the conversation
@@ -47,7 +45,7 @@ contains
       do
         call look_back(conversation, kept, earlier, found, changed, next, request)
         if (next == answering) then
-          call answer(conversation, task, path, changed, request, found)
+          call answer(conversation, path, changed, request, found)
           if (asked_to_end()) next = over
           if (next == over) exit
           call catch_interrupts()
@@ -55,7 +53,7 @@ contains
         end if
         if (next /= changing) exit
         changed = .true.
-        call lead(conversation, task)
+        call lead(conversation)
         if (conversation%state /= going) next = over
         if (next == over) exit
       end do
@@ -70,9 +68,8 @@ contains
   end subroutine run_by_turns
 
   !> Give an answer about the mechanism with the values that it has now. Changes since the last run are in the draft.
-  subroutine answer(conversation, task, path, changed, request, found)
+  subroutine answer(conversation, path, changed, request, found)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
-    class(task_type), intent(in) :: task                     !< computation of the program: kinematics or dynamics
     character(len=*), intent(in) :: path                     !< name of the file that was run
     logical, intent(in) :: changed                           !< something was changed since the last run
     character(len=*), intent(in) :: request                  !< options of the command line
@@ -101,7 +98,7 @@ contains
       call conversation%say(err%message)
     else
       found%count = 0
-      call run_file(task, options, file, processes, code, found)
+      call run_file(options, file, processes, code, found)
       if (found%count == 0) return
       write (error_unit, '(a)', advance='no') all_rows_text(found, digits_of_summary)
       call conversation%say('(to three digits; show gives all)')

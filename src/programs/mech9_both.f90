@@ -2,15 +2,14 @@
 program mech9_both
   use mech9_program, only: run_program
   use mech9_system, only: take_argument
-  use mech9_kinematic_task, only: kinematic_task
-  use mech9_dynamic_task, only: dynamic_task
+  use mech9_program_kind, only: kinematics, dynamics
   implicit none
   character(len=:), allocatable :: name
 
   call take_argument(0, name)
   if (name(max(1, len(name) - 5):) == 'mech9d') then
-    call run_program(dynamic_task())
+    call run_program(dynamics)
   else
-    call run_program(kinematic_task())
+    call run_program(kinematics)
   end if
 end program mech9_both

@@ -25,6 +25,7 @@ module mech9_model_motion
     procedure :: assemble
     procedure :: prepare
     procedure :: find_tolerances
+    procedure :: is_free
     procedure :: driven
     procedure :: free
     procedure :: close => close_motion
@@ -77,6 +78,17 @@ contains
     if (.not. self%simulation%with_error) return
     call find_accuracy(model, self%plan, self%start, self%simulation%errors, err, pictures, interruption)
   end subroutine find_tolerances
+
+  !> Whether the motion is under forces.
+  pure logical function is_free(self)
+    class(model_motion_type), intent(in) :: self   !< the motion, prepared
+
+    is_free = .false.
+    select type (found => self%simulation)
+    type is (free_simulation_type)
+      is_free = .true.
+    end select
+  end function is_free
 
   !> The simulation of a driven motion.
   function driven(self) result(simulation)

@@ -1,6 +1,6 @@
 !> Equilibria of a model, from its assembly on: what --equilibrium, --modes and --linear find.
 module mech9_rest
-  use mech9_kinds, only: wp
+  use mech9_kinds, only: wp, pi
   use mech9_text, only: to_text
   use mech9_error, only: error_type, raise, add_place, exit_data, exit_assembly, exit_interrupted
   use mech9_dynamics_failures, only: failure_no_inertia
@@ -13,6 +13,8 @@ module mech9_rest
   use mech9_simulation, only: interruption_type
   use mech9_resting_mechanism, only: resting_type
   use mech9_linearised_equilibrium, only: equilibrium_type
+  use mech9_mode_shapes, only: displacement, position_in_vibration
+  use mech9_film, only: film_type, new_film
   use mech9_equilibria, only: find_equilibrium, find_equilibria
   use mech9_contact_rest, only: has_rigid_contacts, find_rest_on_contacts, find_all_on_contacts, bearing_contact
   use mech9_explained_assembly, only: assemble_model
@@ -32,8 +34,12 @@ module mech9_rest
   contains
     procedure :: assemble
     procedure :: find
+    procedure :: film_mode
   end type rest_type
 
+  !> Pictures of one period of a mode, and the amplitude of the largest free coordinate in them [rad, lengths of the mechanism].
+  integer, parameter :: pictures_of_period = 49
+  real(wp), parameter :: shown_amplitude = 0.2_wp
   !> A position lies behind a stop by more than this in the unit of the coordinate: equilibria are found to 1e-9 and better.
   real(wp), parameter :: behind_stop = 1.0e-9_wp
   !> Choices of ends that are tried at most: all of seven ends.
@@ -304,4 +310,32 @@ contains
     is_interruption = .false.
     if (allocated(err)) is_interruption = err%code == exit_interrupted
   end function is_interruption
+
+  !> Film one period of a mode of the first equilibrium. Positions in which chains do not close are left out.
+  subroutine film_mode(self, model, mode, film, err)
+    class(rest_type), intent(in) :: self                    !< with the modes of its first equilibrium
+    type(model_type), intent(in) :: model                   !< the model
+    integer, intent(in) :: mode                             !< number of the mode
+    type(film_type), intent(out) :: film                    !< the positions, each with its time
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+    type(state_type) :: position
+    real(wp) :: phase, period
+    integer :: i
+    logical :: found
+
+    associate (equilibrium => self%equilibria(1))
+      period = 1.0_wp
+      if (abs(aimag(equilibrium%modes%roots(mode))) > 0.0_wp) period = 2.0_wp*pi/abs(aimag(equilibrium%modes%roots(mode)))
+      film = new_film(model%mechanism, model%problem%partition%independent(), pictures_of_period)
+      do i = 1, pictures_of_period
+        phase = 2.0_wp*pi*(i - 1)/(pictures_of_period - 1)
+        call position_in_vibration(model%mechanism, equilibrium, displacement(equilibrium, mode, shown_amplitude, phase), &
+                                   position, found, err)
+        if (allocated(err)) return
+        if (.not. found) cycle
+        position%t = period*(i - 1)/(pictures_of_period - 1)
+        call film%take(model%mechanism, equilibrium%resting%plan, position, [position%t])
+      end do
+    end associate
+  end subroutine film_mode
 end module mech9_rest

@@ -6,6 +6,7 @@ module mech9_run
   use mech9_variable_model, only: variable_model_type
   use mech9_simulation, only: interruption_type
   use mech9_model_motion, only: model_motion_type
+  use mech9_driven_motion, only: set_inputs
   use mech9_film, only: film_type, new_film
   use mech9_masks, only: numbers_of
   use mech9_applied_forces, only: new_applied_forces
@@ -24,6 +25,7 @@ module mech9_run
     procedure :: record_film
     procedure :: keep_arrows
     procedure :: make
+    procedure :: check
     procedure :: close => close_run
   end type run_type
 
@@ -93,6 +95,24 @@ contains
     self%source%interruption => null()
     if (.not. (allocated(err) .or. self%source%quantities%is_empty())) call self%source%quantities%finish()
   end subroutine make
+
+  !> Fail where a run would fail: the motion cannot begin at the start, or drives have no values at the end of the time.
+  subroutine check(self, model, err, variable)
+    class(run_type), intent(inout), target :: self                            !< the run, with its motion assembled; its first row is computed
+    type(model_type), intent(in), target :: model                             !< its model
+    type(error_type), allocatable, intent(out) :: err                         !< allocated if it failed
+    class(variable_model_type), intent(inout), optional, target :: variable   !< the model as a function of its parameters, where
+                                                                              !< derivatives are requested
+    real(wp), dimension(size(model%mechanism%pairs)) :: q, dq, ddq
+    real(wp), allocatable :: row(:)
+
+    call self%prepare(model, err, variable)
+    if (.not. allocated(err)) call self%source%begin_section(err)
+    if (allocated(err)) return
+    allocate (row(self%source%columns%width()))
+    call self%source%row_at(model%request%time%start, row, err)
+    if (.not. allocated(err)) call set_inputs(model%problem%drives, model%request%time%end, q, dq, ddq, err)
+  end subroutine check
 
   !> End the motion, if there is one. Rows and quantities stay.
   subroutine close_run(self)

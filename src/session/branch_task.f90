@@ -4,15 +4,13 @@ module mech9_branch_task
   use mech9_error, only: error_type
   use mech9_json, only: json_type
   use mech9_text, only: string_type
-  use mech9_heading, only: heading_type, heading_of
+  use mech9_heading, only: heading_of
   use mech9_plot, only: picture_of_plot
   use mech9_branch_plot, only: branch_rows_type, draw_branch_plot, read_branch_plot
   use mech9_plot_request, only: plot_request_type
-  use mech9_table, only: table_type
   use mech9_hdf5_file, only: hdf5_file_type
-  use mech9_structure_layout, only: write_structure, write_coordinates
   use mech9_branches_layout, only: write_branches
-  use mech9_hdf5_record, only: write_provenance
+  use mech9_answer_files, only: save_table, begin_file, end_file
   use mech9_program_kind, only: dynamics
   use mech9_command_line, only: command_line_type
   use mech9_diagnostics, only: diagnostics_type
@@ -27,7 +25,6 @@ module mech9_branch_task
   use mech9_friction_text, only: print_left_out
   use mech9_report_parts, only: begin_report
   use mech9_signal_interruption, only: signal_interruption_type
-  use mech9_version, only: name_and_version
   implicit none
   private
   public :: work_on_branches
@@ -54,7 +51,7 @@ contains
       call find_branches(model, variable, options%argument('branch'), found, err, signal_interruption_type())
     if (found%count() > 0) then
       if (.not. options%has('quiet')) call tell(model, found)
-      if (paths%table /= '') call write_table(paths%table, options%has('names'), model, found, of_files)
+      call save_table(paths%table, options, model, heading_of(model%mechanism%title, found%columns), found%rows, of_files)
       if (paths%hdf5 /= '' .and. .not. allocated(of_files)) &
         call write_hdf5(paths%hdf5, options, model, found, diagnostics%sources(1)%text, of_files)
       if (.not. allocated(of_files)) call draw_plots(options, model, found, paths%table, of_files)
@@ -77,26 +74,6 @@ contains
     if (any(found%of == 'equilibrium')) call print_left_out(error_unit, model%mechanism)
   end subroutine tell
 
-  !> Write the table.
-  subroutine write_table(path, by_names, model, found, err)
-    character(len=*), intent(in) :: path                 !< of the file; '-' is standard output
-    logical, intent(in) :: by_names                      !< columns are called by the names of pairs
-    type(model_type), intent(in) :: model                !< the model
-    type(branches_found_type), intent(in) :: found       !< the branches
-    type(error_type), allocatable, intent(out) :: err    !< allocated if the file cannot be written
-    type(error_type), allocatable :: at_close
-    type(table_type) :: table
-    type(heading_type) :: heading
-
-    heading = heading_of(model%mechanism%title, found%columns)
-    if (by_names) call heading%call_by_names(model%mechanism%names)
-    call table%open(path, heading, name_and_version(model%program), err)
-    if (allocated(err)) return
-    call table%write_rows(found%rows, err)
-    call table%close(at_close)
-    if (.not. allocated(err)) call move_alloc(at_close, err)
-  end subroutine write_table
-
   !> Write the HDF5 file.
   subroutine write_hdf5(path, options, model, found, data_text, err)
     character(len=*), intent(in) :: path                 !< of the file
@@ -107,15 +84,10 @@ contains
     type(error_type), allocatable, intent(out) :: err    !< allocated if the file cannot be written
     type(hdf5_file_type) :: file
 
-    call file%create(path, err)
+    call begin_file(path, options, model, data_text, file, err)
     if (allocated(err)) return
-    call write_coordinates(file, model)
-    call write_provenance(file, options, model, data_text)
-    call write_structure(file, model)
     call write_branches(found, file)
-    call file%flush()
-    call file%close()
-    if (allocated(file%failure)) err = file%failure
+    call end_file(file, err)
   end subroutine write_hdf5
 
   !> Draw the plots, and print a line about each.

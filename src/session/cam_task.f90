@@ -11,13 +11,11 @@ module mech9_cam_task
   use mech9_json, only: json_type
   use mech9_diagnostics, only: diagnostics_type
   use mech9_model, only: model_type
-  use mech9_plan, only: plan_type
-  use mech9_state, only: state_type
+  use mech9_model_motion, only: model_motion_type
   use mech9_cam_profile, only: cam_profile_type, find_profile
   use mech9_cam_rows, only: list_cam_rows
-  use mech9_table, only: table_type
-  use mech9_heading, only: heading_type, new_heading
-  use mech9_version, only: name_and_version
+  use mech9_answer_files, only: save_table
+  use mech9_heading, only: new_heading
   use mech9_cam_picture, only: save_cam_picture
   use mech9_cam_text, only: print_cam, judge_cam, name_of_cam
   use mech9_cam_report, only: add_cam
@@ -29,11 +27,10 @@ module mech9_cam_task
 contains
 
   !> Compute the profiles of all requested cams, and write their files.
-  subroutine work_on_cams(options, model, plan, start, diagnostics, reported, err)
+  subroutine work_on_cams(options, model, motion, diagnostics, reported, err)
     type(command_line_type), intent(in) :: options      !< the command line
     type(model_type), intent(in), target :: model       !< the model
-    type(plan_type), intent(in) :: plan                 !< its plan
-    type(state_type), intent(in) :: start               !< its closed position at the start
+    type(model_motion_type), intent(in) :: motion       !< its motion, assembled
     type(diagnostics_type), intent(in) :: diagnostics   !< messages so far, for the report
     logical, intent(out) :: reported                    !< the report is written, or could not be written
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
@@ -50,7 +47,7 @@ contains
     do k = 1, size(model%request%cams)
       if (.not. any(files%number == k)) cycle
       associate (cam => model%request%cams(k))
-        call find_profile(model, plan, start, cam, profile, err)
+        call find_profile(model, motion%plan, motion%start, cam, profile, err)
         if (.not. allocated(err)) call judge_cam(model, k, profile, err)
         call add_place(err, place=cam%place)
         if (allocated(err)) return
@@ -63,7 +60,7 @@ contains
           if (files(i)%is_picture) then
             call save_cam_picture(files(i)%path, name_of_cam(model, k), model, cam, profile, err)
           else
-            call save_table(files(i)%path, model, k, profile, options%has('names'), err)
+            call write_profile(files(i)%path, options, model, k, profile, err)
           end if
           if (allocated(err)) return
           if (files(i)%path /= '-' .and. .not. options%has('quiet')) &
@@ -112,29 +109,18 @@ contains
   end subroutine read_files
 
   !> Write the table of a profile, with a row for each output at which the follower moves against the cam.
-  subroutine save_table(path, model, number, profile, by_names, err)
+  subroutine write_profile(path, options, model, number, profile, err)
     character(len=*), intent(in) :: path                !< of the table; '-' is standard output
+    type(command_line_type), intent(in) :: options      !< the command line
     type(model_type), intent(in) :: model               !< the model
     integer, intent(in) :: number                       !< of the cam
     type(cam_profile_type), intent(in) :: profile       !< its profile
-    logical, intent(in) :: by_names                     !< columns of coordinates are called by the names of these
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(string_type), allocatable :: names(:), units(:)
-    type(heading_type) :: heading
-    type(table_type) :: table
-    type(error_type), allocatable :: at_close
     real(wp), allocatable :: rows(:, :)
-    integer :: i
 
     call list_cam_rows(model%mechanism, model%request%cams(number), profile, names, units, rows)
-    heading = new_heading(model%mechanism%title//new_line('a')//name_of_cam(model, number), names, units)
-    if (by_names) call heading%call_by_names(model%mechanism%names)
-    call table%open(path, heading, name_and_version(model%program), err)
-    do i = 1, size(rows, 2)
-      if (allocated(err)) exit
-      call table%write_row(rows(:, i), err)
-    end do
-    call table%close(at_close)
-    if (.not. allocated(err)) call move_alloc(at_close, err)
-  end subroutine save_table
+    call save_table(path, options, model, &
+                    new_heading(model%mechanism%title//new_line('a')//name_of_cam(model, number), names, units), rows, err)
+  end subroutine write_profile
 end module mech9_cam_task

@@ -4,19 +4,18 @@ module mech9_exponents_task
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: string_type, to_text
-  use mech9_counted, only: counted
   use mech9_json, only: json_type
   use mech9_heading, only: new_heading
-  use mech9_table, only: table_type
+  use mech9_answer_files, only: save_table
   use mech9_command_line, only: command_line_type
   use mech9_diagnostics, only: diagnostics_type
   use mech9_model, only: model_type
   use mech9_law_times, only: check_times_of_laws
   use mech9_exponents, only: exponents_found_type, find_exponents
+  use mech9_exponents_words, only: print_exponents
   use mech9_exponents_report, only: add_exponents
   use mech9_report_parts, only: begin_report
   use mech9_signal_interruption, only: signal_interruption_type
-  use mech9_version, only: name_and_version
   implicit none
   private
   public :: work_on_exponents
@@ -48,33 +47,6 @@ contains
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine work_on_exponents
 
-  !> Print the exponents with their standard errors.
-  subroutine print_exponents(unit, model, found)
-    integer, intent(in) :: unit                          !< Fortran unit to write to
-    type(model_type), intent(in) :: model                !< the model
-    type(exponents_found_type), intent(in) :: found      !< the exponents
-    character(len=:), allocatable :: words
-    integer :: k
-
-    if (model%mechanism%title /= '') write (unit, '(a)') model%mechanism%title
-    do k = 1, size(found%exponents) - found%lost
-      write (unit, '(a)') 'exponent '//to_text(k)//': '//to_text(found%exponents(k), 6)//' 1/s, standard error '// &
-        to_text(found%errors(k), 2)//', change in the second half of the time '//to_text(found%changes(k), 2)
-    end do
-    do k = size(found%exponents) - found%lost + 1, size(found%exponents)
-      write (unit, '(a)') 'exponent '//to_text(k)//': minus infinity, since events make neighbouring motions the same'
-    end do
-    if (size(found%exponents) == found%states .and. found%lost == 0) then
-      words = 'their sum: '//to_text(sum(found%exponents), 8)//' 1/s'
-      if (found%knows_divergence) words = words//'; mean divergence '//to_text(found%divergence, 8)//' 1/s'
-      write (unit, '(a)') words
-    end if
-    write (unit, '(a)') 'means from t = '//to_text(found%from, 6)//' s to '//to_text(found%to, 6)//' s; '// &
-      counted(found%orthonormalised, 'orthonormal set')//' of directions'
-    if (found%coordinate_changes > 0) &
-      write (unit, '(a)') counted(found%coordinate_changes, 'change')//' of the independent coordinates'
-  end subroutine print_exponents
-
   !> Write the table of running means: to the file that is named, or to standard output.
   subroutine write_table(options, model, found, err)
     type(command_line_type), intent(in) :: options       !< the command line
@@ -82,8 +54,6 @@ contains
     type(exponents_found_type), intent(in) :: found      !< the exponents
     type(error_type), allocatable, intent(out) :: err    !< allocated if the file cannot be written
     type(string_type), dimension(size(found%exponents) + 1) :: names, units
-    type(error_type), allocatable :: at_close
-    type(table_type) :: table
     real(wp), allocatable :: rows(:, :)
     integer :: k
 
@@ -94,15 +64,10 @@ contains
       names(k + 1)%text = 'L'//to_text(k)
       units(k + 1)%text = '1/s'
     end do
-    call table%open(options%table_of_answer(), new_heading(model%mechanism%title, names, units), &
-                    name_and_version(model%program), err)
-    if (allocated(err)) return
     allocate (rows(size(names), size(found%times)))
     rows(1, :) = found%times
     rows(2:, :) = found%history
-    call table%write_rows(rows, err)
-    call table%close(at_close)
-    if (.not. allocated(err)) call move_alloc(at_close, err)
+    call save_table(options%table_of_answer(), options, model, new_heading(model%mechanism%title, names, units), rows, err)
   end subroutine write_table
 
   !> Save the report.

@@ -11,8 +11,8 @@ module mech9_linear_task
   use mech9_model, only: model_type
   use mech9_linear_motion, only: linear_motion_type, find_linear_motion
   use mech9_hdf5_file, only: hdf5_file_type
-  use mech9_linear_file, only: put_linear_motion
-  use mech9_equilibrium_task, only: begin_file, end_file
+  use mech9_linear_layout, only: put_linear_motion
+  use mech9_answer_files, only: begin_file, end_file
   use mech9_signal_interruption, only: signal_interruption_type
   use mech9_law_times, only: check_times_of_laws
   implicit none

@@ -1,14 +1,14 @@
 !> A run of a program: it opens the results, records the motion, closes the results, and reports.
 module mech9_run_task
   use, intrinsic :: iso_fortran_env, only: error_unit
+  use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: string_type
   use mech9_system, only: asked_to_end
   use mech9_command_line, only: command_line_type
   use mech9_diagnostics, only: diagnostics_type
   use mech9_model, only: model_type
-  use mech9_plan, only: plan_type
-  use mech9_requested, only: requested_type
+  use mech9_free_simulation, only: free_simulation_type
   use mech9_model_motion, only: model_motion_type
   use mech9_run, only: run_type
   use mech9_motion_event, only: motion_events_type
@@ -38,7 +38,8 @@ module mech9_run_task
   use mech9_run_facts, only: list_run_facts
   use mech9_whole_report, only: compose_report
   use mech9_recording, only: record
-  use mech9_run_report, only: run_report_type
+  use mech9_run_text, only: print_run
+  use mech9_row_layout, only: write_coefficients, take_changes, write_events
   implicit none
   private
   public :: carry_out
@@ -46,11 +47,10 @@ module mech9_run_task
 contains
 
   !> Carry out a run and report it.
-  subroutine carry_out(options, pictures, model, report, run, diagnostics, reported, kept, periodic)
+  subroutine carry_out(options, pictures, model, run, diagnostics, reported, kept, periodic)
     type(command_line_type), intent(in) :: options                    !< the command line
     type(picture_requests_type), intent(in) :: pictures               !< the pictures of the mechanism that are requested
     type(model_type), intent(inout), target :: model                  !< of the simulation; gets the tolerances for an accuracy
-    class(run_report_type), intent(in) :: report                      !< of this kind of motion
     type(run_type), intent(inout), target :: run                      !< prepared
     type(diagnostics_type), intent(inout) :: diagnostics              !< gets the errors
     logical, intent(out) :: reported                                  !< the run has written the report
@@ -72,7 +72,7 @@ contains
       if (allocated(err)) call diagnostics%add_error(err)
       if (allocated(err)) return
       if (pictures%any_wanted()) call run%record_film(model)
-      call begin_run(options, model, motion%plan, motion%simulation%requested, source, results, diagnostics, ready)
+      call begin_run(options, model, run, results, diagnostics, ready)
       if (.not. options%has('quiet')) call print_start_way(error_unit, model%mechanism, motion%way)
       reported = ready .and. options%has('report')
       if (.not. ready) return
@@ -80,13 +80,13 @@ contains
       call list_run_facts(motion, outcome, facts)
       call results%write_facts(facts)
       hdf5 => results%hdf5()
-      if (associated(hdf5)) call report%write_start(hdf5, motion)
+      if (associated(hdf5) .and. motion%is_free()) call write_start(hdf5, motion, motion%free())
       if (.not. allocated(err)) call record(source, model, results, options%has('quiet'), outcome, err, kept)
-      if (.not. options%has('quiet')) call report%print(error_unit, motion, results%table_path, outcome)
+      if (.not. options%has('quiet')) call print_run(error_unit, motion, results%table_path, outcome)
       if (allocated(err)) call diagnostics%add_error(err)
       call list_run_facts(motion, outcome, facts)
       call results%write_facts(facts, diagnostics%code())
-      if (associated(hdf5)) call report%write_end(hdf5, motion)
+      if (associated(hdf5) .and. motion%is_free()) call write_end(hdf5, motion%free())
       call tell_events(model, motion%simulation%events, results, kept)
       call end_run(options, pictures, model, source, results, diagnostics)
       if (.not. reported) return
@@ -95,6 +95,27 @@ contains
       if (allocated(err)) call diagnostics%add_error(err)
     end associate
   end subroutine carry_out
+
+  !> Write the coefficients of a free motion as data sets, and make data sets for changes of coordinates.
+  subroutine write_start(hdf5, motion, simulation)
+    type(hdf5_sink_type), intent(inout) :: hdf5               !< the open file of results
+    type(model_motion_type), intent(in) :: motion             !< the motion, prepared
+    type(free_simulation_type), intent(in) :: simulation      !< its simulation
+
+    call write_coefficients(hdf5%file, motion%plan, simulation)
+    call hdf5%begin_changes(size(motion%plan%independent))
+  end subroutine write_start
+
+  !> Write the changes of the independent coordinates and the events as data sets.
+  subroutine write_end(hdf5, simulation)
+    type(hdf5_sink_type), intent(inout) :: hdf5               !< the open file of results
+    type(free_simulation_type), intent(in) :: simulation      !< the free motion, as far as it went
+    real(wp), allocatable :: rows(:, :)
+
+    call take_changes(simulation, rows)
+    call hdf5%write_changes(rows)
+    call write_events(hdf5%file, simulation)
+  end subroutine write_end
 
   !> Tell the events of a run to its results and to the kept rows, with impulses in the units of the data file.
   subroutine tell_events(model, events, results, kept)
@@ -130,12 +151,10 @@ contains
   end subroutine find_tolerances
 
   !> Print the title of the run and open its results. `ready` is false after an error.
-  subroutine begin_run(options, model, plan, requested, source, results, diagnostics, ready)
+  subroutine begin_run(options, model, run, results, diagnostics, ready)
     type(command_line_type), intent(in) :: options         !< the command line
     type(model_type), intent(in) :: model              !< the model
-    type(plan_type), intent(in) :: plan                    !< the plan of the mechanism
-    type(requested_type), intent(in) :: requested          !< the requested part of the motion
-    type(row_source_type), intent(in) :: source            !< computes the rows
+    type(run_type), intent(in) :: run                      !< prepared
     type(results_type), intent(out), target :: results     !< opened
     type(diagnostics_type), intent(inout) :: diagnostics   !< gets the errors
     logical, intent(out) :: ready                          !< the run can begin
@@ -143,15 +162,17 @@ contains
     type(hdf5_sink_type), pointer :: hdf5
 
     ready = .false.
-    call announce(options, model, plan, requested)
+    call announce(options, model, run%motion)
     if (model%request%output%with_forces() .and. .not. options%has('quiet')) call print_forceless(error_unit, model%mechanism)
-    call results%open(options, model, diagnostics%sources(1)%text, source%columns, err)
-    ready = .not. allocated(err)
-    if (.not. ready) call diagnostics%add_error(err)
-    hdf5 => results%hdf5()
-    if (.not. (ready .and. associated(hdf5))) return
-    call write_uniqueness(hdf5%file, source%columns, source%forces)
-    if (.not. source%quantities%is_empty()) call write_quantities(source%quantities, hdf5%file, again=.false.)
+    associate (source => run%source)
+      call results%open(options, model, diagnostics%sources(1)%text, source%columns, err)
+      ready = .not. allocated(err)
+      if (.not. ready) call diagnostics%add_error(err)
+      hdf5 => results%hdf5()
+      if (.not. (ready .and. associated(hdf5))) return
+      call write_uniqueness(hdf5%file, source%columns, source%forces)
+      if (.not. source%quantities%is_empty()) call write_quantities(source%quantities, hdf5%file, again=.false.)
+    end associate
   end subroutine begin_run
 
   !> Close the results of a run, draw the mechanism, and print which files were written.
@@ -187,19 +208,18 @@ contains
   end subroutine end_run
 
   !> Print the title, and with --verbose the structure and the plan.
-  subroutine announce(options, model, plan, requested)
+  subroutine announce(options, model, motion)
     type(command_line_type), intent(in) :: options   !< the command line
     type(model_type), intent(in) :: model        !< the model
-    type(plan_type), intent(in) :: plan              !< the plan of the mechanism
-    type(requested_type), intent(in) :: requested    !< the requested part of the motion
+    type(model_motion_type), intent(in) :: motion    !< prepared
 
     if (.not. options%has('quiet') .and. model%mechanism%title /= '') write (error_unit, '(a)') model%mechanism%title
     if (.not. options%has('quiet')) call print_held(error_unit, model)
     if (.not. options%has('quiet')) call print_parameter_notes(error_unit, model)
     if (.not. options%has('verbose')) return
     call print_structure(error_unit, model%mechanism%structure, model%problem%partition%vectors)
-    call print_mobility(error_unit, model%mechanism, plan)
-    call print_plan(error_unit, model%mechanism, plan, requested)
+    call print_mobility(error_unit, model%mechanism, motion%plan)
+    call print_plan(error_unit, model%mechanism, motion%plan, motion%simulation%requested)
   end subroutine announce
 
   !> Draw the requested pictures of the mechanism, and print a line about each.

@@ -14,14 +14,12 @@ module mech9_session
   use mech9_setting, only: apply_setting
   use mech9_drive_reader, only: files_of_groups
   use mech9_varied_document, only: varied_document_type, new_varied_document
-  use mech9_reader, only: read_structure_only, read_model
+  use mech9_reader, only: read_model
   use mech9_data_help, only: write_data_help
-  use mech9_structure, only: structure_type
-  use mech9_partition, only: partition_type
   use mech9_kept_rows, only: kept_rows_type
   use mech9_model, only: model_type
-  use mech9_structure_text, only: print_structure, print_names_of_vectors
-  use mech9_task, only: task_type, answers_only
+  use mech9_structure_text, only: print_structure_of
+  use mech9_task, only: work_on_mechanism, answers_only
   use mech9_report_parts, only: save_short_report
   use mech9_study_task, only: work_on_study
   use mech9_processes, only: processes_type
@@ -40,8 +38,7 @@ contains
 
   !> Carry out a command line about a data file or about the program itself; `code` is the exit code of the
   !> program.
-  subroutine carry_out(task, options, processes, code)
-    class(task_type), intent(in) :: task                     !< the work of this program
+  subroutine carry_out(options, processes, code)
     type(command_line_type), intent(in) :: options           !< the command line
     type(processes_type), intent(inout) :: processes   !< those that make studies and searches together
     integer, intent(out) :: code                             !< exit code of the program
@@ -49,20 +46,20 @@ contains
 
     code = exit_done
     if (options%has('help')) then
-      write (output_unit, '(a)') help_text(task%program)
+      write (output_unit, '(a)') help_text(options%program)
     else if (options%has('version')) then
-      write (output_unit, '(a)') version_text(task%program)
+      write (output_unit, '(a)') version_text(options%program)
     else if (options%has('help-data')) then
-      call show_data_help(task, options%argument('help-data'), code)
+      call show_data_help(options, code)
     else if (options%has('merge')) then
       call catch_size_limit()
       call merge_parts(options, code)
     else
-      call run_file(task, options, options%file, processes, code)
+      call run_file(options, options%file, processes, code)
     end if
     call flush_output(err)
     if (.not. allocated(err)) return
-    write (error_unit, '(3a)') program_names(task%program), ': ', err%message
+    write (error_unit, '(3a)') program_names(options%program), ': ', err%message
     if (code == exit_done) code = err%code
   end subroutine carry_out
 
@@ -73,22 +70,21 @@ contains
     asks_for_text = options%has('help') .or. options%has('version') .or. options%has('help-data')
   end function asks_for_text
 
-  subroutine show_data_help(task, group, code)
-    class(task_type), intent(in) :: task    !< the work of this program
-    character(len=*), intent(in) :: group   !< name of a group; empty: the list of groups
-    integer, intent(out) :: code            !< exit code of the program
+  !> Carry out --help-data: about the group that it names, or the list of groups.
+  subroutine show_data_help(options, code)
+    type(command_line_type), intent(in) :: options   !< the command line
+    integer, intent(out) :: code                     !< exit code of the program
     type(error_type), allocatable :: err
 
     code = exit_done
-    call write_data_help(output_unit, group, err)
+    call write_data_help(output_unit, options%argument('help-data'), err)
     if (.not. allocated(err)) return
-    write (error_unit, '(3a)') program_names(task%program), ': ', err%message
+    write (error_unit, '(3a)') program_names(options%program), ': ', err%message
     code = err%code
   end subroutine show_data_help
 
   !> Read a data file and carry out the options.
-  subroutine run_file(task, options, path, processes, code, kept)
-    class(task_type), intent(in) :: task                    !< the work of this program
+  subroutine run_file(options, path, processes, code, kept)
     type(command_line_type), intent(in) :: options          !< the command line
     character(len=*), intent(in) :: path                    !< of the data file
     type(processes_type), intent(inout) :: processes  !< those that make studies and searches together
@@ -96,8 +92,6 @@ contains
     type(kept_rows_type), intent(inout), optional :: kept   !< the rows of the run, for who looks at them after it
     type(document_type) :: document
     type(diagnostics_type) :: diagnostics, choice
-    type(structure_type) :: structure
-    type(partition_type) :: partition
     type(model_type), target :: model
     type(varied_document_type), target :: variable
     type(string_type), allocatable :: settings(:), inputs(:)
@@ -108,7 +102,7 @@ contains
     ! an answer without a run has no results to keep: Ctrl-C ends it at once
     call catch_size_limit()
     if (.not. answers_only(options)) call catch_interrupts()
-    model%program = task%program
+    model%program = options%program
     call read_document(path, document, diagnostics)
     call options%arguments('set', settings)
     if (diagnostics%code() /= exit_file) then
@@ -119,7 +113,7 @@ contains
     call list_inputs(path, options, document, inputs)
     call refuse_overwriting(options, inputs, err)
     if (allocated(err)) then
-      write (error_unit, '(3a)') program_names(task%program), ': ', err%message
+      write (error_unit, '(3a)') program_names(options%program), ': ', err%message
       code = err%code
       return
     end if
@@ -127,14 +121,10 @@ contains
     reported = .not. processes%is_first
     if (options%has('structure')) then
       if (.not. options%has('quiet')) call print_unused_options(error_unit, options, model)
-      call read_structure_only(document, structure, partition, diagnostics)
-      if (.not. diagnostics%failed()) then
-        if (.not. options%has('quiet')) call print_names_of_vectors(error_unit, diagnostics%names)
-        call print_structure(output_unit, structure, partition%vectors)
-      end if
+      call print_structure_of(output_unit, merge(0, error_unit, options%has('quiet')), document, diagnostics)
     else
       legible = .not. diagnostics%failed()
-      call read_model(document, task%program, model, diagnostics)
+      call read_model(document, options%program, model, diagnostics)
       if (.not. diagnostics%failed()) call refuse_other_mechanism(document, diagnostics)
       if (.not. diagnostics%failed()) then
         if (.not. options%has('quiet')) call print_unused_options(error_unit, options, model)
@@ -143,7 +133,7 @@ contains
         if (allocated(err)) call diagnostics%add_error(err)
         if (options%has('study') .or. options%has('optimize') .or. options%has('dakota') .or. options%has('branch') .or. &
             model%request%output%with_derivatives()) &
-          call new_varied_document(document, diagnostics%sources, task%program, variable)
+          call new_varied_document(document, diagnostics%sources, options%program, variable)
         if (.not. allocated(err) .and. options%has('dakota')) then
           call work_for_dakota(options, variable, model, diagnostics)
         else if (.not. allocated(err) .and. options%has('study')) then
@@ -151,16 +141,16 @@ contains
         else if (.not. allocated(err) .and. options%has('optimize')) then
           call work_on_optimum(options, document, variable, model, diagnostics, reported, processes)
         else if (.not. allocated(err)) then
-          call task%work(options, model, variable, diagnostics, reported, kept)
+          call work_on_mechanism(options, model, variable, diagnostics, reported, kept)
         end if
-      else if (legible .and. task%program == kinematics) then
+      else if (legible .and. options%program == kinematics) then
         call judge_choice_of(document, diagnostics, choice)
       end if
     end if
     code = diagnostics%code()
     if (choice%failed()) code = choice%code()
     if (options%has('report') .and. .not. reported) &
-      call report_briefly(task, options, model, choice, diagnostics, code)
+      call report_briefly(options, model, choice, diagnostics, code)
     call choice%report(error_unit)
     call diagnostics%report(error_unit)
   end subroutine run_file
@@ -186,8 +176,7 @@ contains
   end subroutine list_inputs
 
   !> Write the report where no run wrote one. A failure to write it is another error; the first error determines the code.
-  subroutine report_briefly(task, options, model, choice, diagnostics, code)
-    class(task_type), intent(in) :: task                   !< the work of this program
+  subroutine report_briefly(options, model, choice, diagnostics, code)
     type(command_line_type), intent(in) :: options         !< the command line
     type(model_type), intent(in) :: model                  !< the model
     type(diagnostics_type), intent(in) :: choice           !< judgement of the choice of independent coordinates

@@ -9,7 +9,7 @@ module mech9_study_statistics
   use mech9_sample_quantiles, only: sample_quantile, sort_numbers
   implicit none
   private
-  public :: study_statistics_type, quantile_type, n_levels, quantile_levels
+  public :: study_statistics_type, shares_type, quantile_type, n_levels, quantile_levels
 
   integer, parameter :: n_levels = 3
   !> The shares of the runs that quantiles are told of.

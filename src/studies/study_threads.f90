@@ -7,12 +7,13 @@ module mech9_study_threads
   use mech9_pause, only: pause_for
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
+  use mech9_user_calls, only: calls_user_procedures
   use mech9_simulation, only: interruption_type
   use mech9_run_maker, only: run_maker_type, made_run_type
   use mech9_study_runs, only: study_runs_type, all_handed_out, wait_for_others
   implicit none
   private
-  public :: make_in_threads, threads_of_machine, has_threads
+  public :: make_in_threads, threads_of_machine, threads_for, has_threads
 
   !> Time after which a thread asks again where it has to wait for others [s].
   real(wp), parameter :: short_wait = 0.001_wp
@@ -30,6 +31,14 @@ contains
     threads = 1
     !$ threads = omp_get_max_threads()
   end function threads_of_machine
+
+  !> How many threads a model bears: those of the machine, or one, since a user's procedures may keep numbers from call to call.
+  integer function threads_for(model) result(threads)
+    type(model_type), intent(in) :: model   !< the model
+
+    threads = threads_of_machine()
+    if (calls_user_procedures(model)) threads = 1
+  end function threads_for
 
   !> Make all runs. Each thread takes the next one when it has finished one, so that none waits for runs that take long.
   subroutine make_in_threads(model, varied, threads, interruption, runs)

@@ -11,9 +11,9 @@ FLOORS = ['base', 'system', 'numerics', 'numerics/minima', 'numerics/continuatio
           'sampling', 'user', 'kinematics/plan', 'kinematics/motion', 'kinematics/assembly', 'kinematics/planning', 'kinematics/tracking',
           'ode', 'dynamics', 'dynamics/planning', 'dynamics/variations', 'analyses/sensitivity', 'dynamics/sensitivity', 'reactions', 'simulation/integration',
           'simulation/events', 'simulation',
-          'analyses/equilibrium', 'analyses/continuation', 'analyses/planar_runs', 'analyses', 'wording', 'runs', 'runs/long_term', 'studies', 'synthesis', 'input/document', 'input', 'drafts', 'searches', 'output/layout', 'output', 'interchange/xml', 'interchange', 'reports',
+          'analyses/equilibrium', 'analyses/continuation', 'analyses/planar_runs', 'analyses', 'wording', 'runs', 'runs/long_term', 'studies', 'synthesis', 'input/document', 'input', 'drafts', 'input/checks', 'searches', 'output/layout', 'output', 'interchange/xml', 'interchange', 'reports',
           'pictures/plots', 'pictures/scene', 'pictures/arrows',
-          'pictures/films', 'terminal', 'session/command', 'session/words', 'facade', 'api', 'session/results', 'session/study', 'session/synthesis', 'session',
+          'pictures/films', 'terminal', 'session/command', 'descriptions', 'descriptions/motions', 'facade', 'api', 'session/results', 'session/study', 'session/synthesis', 'session',
           'dialogue/questions',
           'dialogue',
           'programs/mpi', 'programs']

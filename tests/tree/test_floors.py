@@ -4,11 +4,12 @@ import re
 
 import pytest
 
-from floors import FLOORS, MODULE, WITHOUT_WORDS, reached_files, used_modules
+from floors import FLOORS, MODULE, WITHOUT_WORDS, reached_files, used_floors, used_modules
 from mech9_cases import TREE, text_of
 
 MOST_FILES = 25            # in one folder: more are hard to find one's way in
 MOST_KINEMATICS = 13       # files of the kinematics, without those of tolerances, that Lagrange's equations depend on, directly and through others
+MOST_OF_SESSION = 23       # floors that the session uses, with its sub-floors: the number only goes down
 FACADE = ('facade', 'mech9')      # the one module that other programs use
 WITHOUT_ONLY = {('user', 'mech9_taylor')}
 
@@ -75,6 +76,15 @@ def test_motions_begin_on_one_floor(checks, sources):
     for floor, path, text in sources:
         starts = re.findall(r'^\s*call (new_(?:driven|free)_simulation)', text, re.M)
         checks.true(not starts or floor == 'runs', f'{path}: simulations are made on the floor of runs', starts)
+
+
+def test_session_uses_few_floors(checks, sources):
+    """The session keeps options and files; what it asks of the engine stands on floors that C and Python use, too."""
+    uses = used_floors(sources)
+    own = {floor for floor in uses if floor == 'session' or floor.startswith('session/')}
+    below = set().union(*(uses[floor] for floor in own)) - own
+    checks.equal(len(below), MOST_OF_SESSION, 'the session and its sub-floors use as many floors as are counted here: after one less, '
+                 f'lower MOST_OF_SESSION ({" ".join(sorted(below))})')
 
 
 def test_dynamics_depends_on_little_of_kinematics(checks, sources):

@@ -11,7 +11,7 @@ module mech9_mechanism_pictures
   use mech9_force_arrows, only: find_arrows
   use mech9_arrow_drawing, only: ends_of, take_arrows, add_arrows
   use mech9_film, only: film_type, new_film
-  use mech9_view, only: view_type
+  use mech9_view, only: view_type, read_view
   use mech9_skeleton, only: skeleton_type, make_skeleton
   use mech9_slide_places, only: place_slides
   use mech9_wheel_figures, only: find_figures
@@ -43,6 +43,8 @@ module mech9_mechanism_pictures
     type(pose_mark_type), allocatable :: poses(:)     !< poses that links should take; not allocated: none
   contains
     procedure :: any_wanted
+    procedure :: take_view
+    procedure :: mark_pose
     procedure :: save => save_pictures
     procedure :: save_start
   end type mechanism_pictures_type
@@ -56,6 +58,29 @@ contains
     any_wanted = self%sketch /= ''
     if (allocated(self%animations)) any_wanted = any_wanted .or. size(self%animations) > 0
   end function any_wanted
+
+  !> Take the view from which the pictures show the mechanism. Fails where the words are not those of a view.
+  subroutine take_view(self, words, code, err)
+    class(mechanism_pictures_type), intent(inout) :: self   !< the pictures
+    character(len=*), intent(in) :: words                   !< as those of --view
+    integer, intent(in) :: code                             !< exit code of a failure
+    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
+
+    if (.not. allocated(self%view)) allocate (self%view)
+    call read_view(words, code, self%view, err)
+  end subroutine take_view
+
+  !> Mark a pose that a link should take.
+  subroutine mark_pose(self, link, number, place, turn)
+    class(mechanism_pictures_type), intent(inout) :: self   !< the pictures
+    integer, intent(in) :: link                             !< number of the link
+    integer, intent(in) :: number                           !< of the pose
+    real(wp), intent(in) :: place(3)                        !< of its point, in the frame [m]
+    real(wp), intent(in) :: turn(3, 3)                      !< rotation of the link
+
+    if (.not. allocated(self%poses)) allocate (self%poses(0))
+    self%poses = [self%poses, pose_mark_type(link, number, place, turn)]
+  end subroutine mark_pose
 
   !> Make the sketch of an assembled position, without a run. Errors are exit_file.
   subroutine save_start(self, model, plan, start, err)

@@ -9,7 +9,6 @@ module mech9_mpi_program
   use mech9_command_line, only: command_line_type, get_command_words, parse_command_line
   use mech9_system, only: exit_program, leave_quit_alone
   use mech9_session, only: carry_out, asks_for_text
-  use mech9_task, only: task_type
   use mech9_processes, only: processes_type
   implicit none
   private
@@ -18,8 +17,8 @@ module mech9_mpi_program
 contains
 
   !> The whole program is run. There is no return from it. All processes end with the exit code of the first one.
-  subroutine run_mpi_program(task)
-    class(task_type), intent(in) :: task  !< computation of the program: kinematics or dynamics
+  subroutine run_mpi_program(program)
+    integer, intent(in) :: program   !< kinematics or dynamics
     integer :: code, rank
 
     call leave_quit_alone()
@@ -27,7 +26,7 @@ contains
     call MPI_Comm_rank(MPI_COMM_WORLD, rank)
     ! the other processes come to the same messages as the first one
     if (rank > 0) call fall_silent()
-    call run_processes(task, rank == 0, code)
+    call run_processes(program, rank == 0, code)
     call MPI_Bcast(code, 1, MPI_INTEGER, 0, MPI_COMM_WORLD)
     call MPI_Finalize()
     call exit_program(code)
@@ -51,23 +50,23 @@ contains
   end subroutine fall_silent
 
   !> Carry out the command line, with the other processes.
-  subroutine run_processes(task, is_first, code)
-    class(task_type), intent(in) :: task  !< computation of the program: kinematics or dynamics
+  subroutine run_processes(program, is_first, code)
+    integer, intent(in) :: program   !< kinematics or dynamics
     logical, intent(in) :: is_first       !< this is the first process
     integer, intent(out) :: code          !< exit code of this process
     type(processes_type) :: processes
     type(command_line_type) :: options
     type(error_type), allocatable :: err
 
-    call read_options(task%program, options, err)
+    call read_options(program, options, err)
     if (allocated(err)) then
-      write (error_unit, '(4a)') program_names(task%program), '-mpi: ', err%message
+      write (error_unit, '(4a)') program_names(program), '-mpi: ', err%message
       code = err%code
       return
     end if
     processes%is_first = is_first
     call MPI_Comm_size(MPI_COMM_WORLD, processes%count)
-    call carry_out(task, options, processes, code)
+    call carry_out(options, processes, code)
     ! a process that did not come to its study or search tells the others, which may have done so
     if (processes%agreements > 0) return
     if (code /= 0) call raise(err, code, 'this process did not come to its study or search')

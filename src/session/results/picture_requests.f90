@@ -5,7 +5,6 @@ module mech9_picture_requests
   use mech9_text, only: string_type
   use mech9_model, only: model_type
   use mech9_plot_request, only: plot_request_type, take_target
-  use mech9_view, only: read_view
   use mech9_mechanism_pictures, only: mechanism_pictures_type, kind_of_picture, is_moving_kind, moving_endings
   use mech9_command_line, only: command_line_type
   use mech9_written_files, only: result_paths_type, find_result_paths
@@ -56,11 +55,9 @@ contains
       return
     end do
     if (options%has('view')) then
-      allocate (requests%view)
-      call read_view(options%argument('view'), exit_usage, requests%view, err)
+      call requests%take_view(options%argument('view'), exit_usage, err)
     else if (model%request%output%view /= '') then
-      allocate (requests%view)
-      call read_view(model%request%output%view, exit_data, requests%view, err)
+      call requests%take_view(model%request%output%view, exit_data, err)
       call add_place(err, place=model%request%output%view_place)
     end if
   end subroutine read_picture_requests

@@ -19,9 +19,8 @@ module mech9_study_task
   use mech9_signal_interruption, only: signal_interruption_type
   use mech9_study_columns, only: refuse_varied_times
   use mech9_study_plots, only: study_plots_type
-  use mech9_user_calls, only: calls_user_procedures
   use mech9_processes, only: processes_type
-  use mech9_study_threads, only: threads_of_machine, has_threads
+  use mech9_study_threads, only: threads_of_machine, threads_for, has_threads
   use mech9_study_propagation, only: propagation_type, propagate
   use mech9_section_results, only: check_section_plots, write_section_files, print_section
   use mech9_study_words, only: print_study, save_study_report
@@ -145,10 +144,7 @@ contains
     type(command_line_type), intent(in) :: options          !< the command line
     type(model_type), intent(in) :: model                   !< the model with the values of the data file
 
-    threads = threads_of_machine()
-    ! a user's procedures may keep numbers from call to call
-    if (calls_user_procedures(model)) threads = 1
-    threads = options%number('threads', threads)
+    threads = options%number('threads', threads_for(model))
     if (model%request%study%carries()) threads = 1
     if (.not. has_threads()) threads = 1
     threads = max(1, min(threads, most_threads, model%request%study%runs))
@@ -168,7 +164,7 @@ contains
     if (options%number('threads', 1) > 1 .and. .not. has_threads()) &
       write (error_unit, '(a)') 'note: this program was built without threads; one core makes the runs'
     cores = threads_of_machine()
-    if (cores > 1 .and. calls_user_procedures(model) .and. .not. options%has('threads')) &
+    if (cores > 1 .and. threads_for(model) == 1 .and. .not. options%has('threads')) &
       write (error_unit, '(a)') 'note: one thread makes the runs, because procedures of a user may not bear several at a time; '// &
                                 '--threads N asks for more'
   end subroutine print_notes

@@ -11,9 +11,8 @@ module mech9_study_words
   use mech9_run_words, only: duration
   use mech9_report_parts, only: begin_report
   use mech9_study_sums, only: study_sums_type
-  use mech9_main_effects, only: shares_type
   use mech9_study_propagation, only: propagation_type
-  use mech9_study_statistics, only: study_statistics_type, quantile_type, n_levels, quantile_levels
+  use mech9_study_statistics, only: study_statistics_type, shares_type, quantile_type, n_levels, quantile_levels
   implicit none
   private
   public :: print_study, save_study_report

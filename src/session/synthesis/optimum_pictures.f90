@@ -15,7 +15,7 @@ module mech9_optimum_pictures
   use mech9_film, only: film_type
   use mech9_picture_requests, only: picture_requests_type, read_picture_requests
   use mech9_written_files, only: result_paths_type, find_result_paths
-  use mech9_pose_marks, only: pose_mark_type
+  use mech9_signal_interruption, only: signal_interruption_type
   use mech9_plot, only: picture_of_plot
   use mech9_plot_drawing, only: draw_picture, draw_in_terminal, script_of_plot
   use mech9_terminal_size, only: find_terminal_size
@@ -165,12 +165,13 @@ contains
     type(picture_requests_type) :: drawings
     type(model_type) :: shown
     type(film_type) :: film
+    type(signal_interruption_type), target :: interruption
     type(error_type), allocatable :: err
 
     shown = motion%model
     drawings = self%drawings
     call add_targets(synthesis, shown, drawings)
-    call motion%make_film(shown, film, err)
+    call motion%make_film(shown, interruption, film, err)
     if (.not. allocated(err)) call drawings%save(shown, film, err)
     if (allocated(err)) then
       call diagnostics%add_error(err)
@@ -188,7 +189,6 @@ contains
     integer :: i, number, objective
 
     objective = 0
-    allocate (drawings%poses(0))
     do i = 1, min(most_targets, size(synthesis%targets))
       associate (target => synthesis%targets(i))
         number = merge(number + 1, 1, target%objective == objective)
@@ -199,7 +199,7 @@ contains
         point%position = target%place
         shown%mechanism%points = [shown%mechanism%points, point]
         if (shown%request%objectives(objective)%kind == pose_objective) &
-          drawings%poses = [drawings%poses, pose_mark_type(target%link, number, target%place, target%turn)]
+          call drawings%mark_pose(target%link, number, target%place, target%turn)
       end associate
     end do
   end subroutine add_targets

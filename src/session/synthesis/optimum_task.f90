@@ -10,8 +10,7 @@ module mech9_optimum_task
   use mech9_diagnostics, only: diagnostics_type
   use mech9_model, only: model_type
   use mech9_variable_model, only: variable_model_type
-  use mech9_user_calls, only: calls_user_procedures
-  use mech9_study_threads, only: threads_of_machine
+  use mech9_study_threads, only: threads_for
   use mech9_processes, only: processes_type
   use mech9_search, only: optimum_search_type, check_request
   use mech9_signal_interruption, only: signal_interruption_type
@@ -69,7 +68,7 @@ contains
       call diagnostics%add_error(err)
       return
     end if
-    if (.not. options%has('quiet')) call print_differences(error_unit, search%start, search%synthesis)
+    if (.not. options%has('quiet')) call print_differences(error_unit, search)
     call starts%begin_shown(model%program, options%has('quiet'))
     call search%make(model, processes, threads_of(options, model), starts, err)
     if (.not. options%has('quiet')) call print_optimum(error_unit, model, search%synthesis, seconds() - clock)
@@ -87,10 +86,7 @@ contains
     type(command_line_type), intent(in) :: options        !< the command line
     type(model_type), intent(in) :: model                 !< the model
 
-    threads = threads_of_machine()
-    ! a user's procedures may keep numbers from call to call
-    if (calls_user_procedures(model)) threads = 1
-    threads = options%number('threads', threads)
+    threads = options%number('threads', threads_for(model))
   end function threads_of
 
   !> Refuse a part that has no starts.

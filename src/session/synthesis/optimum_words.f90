@@ -6,7 +6,7 @@ module mech9_optimum_words
   use mech9_error, only: error_type
   use mech9_explanation, only: explain
   use mech9_objective, only: quantity_objective
-  use mech9_state, only: state_type
+  use mech9_search, only: optimum_search_type
   use mech9_diagnostics, only: diagnostics_type
   use mech9_model, only: model_type
   use mech9_json, only: json_type
@@ -21,15 +21,14 @@ module mech9_optimum_words
 contains
 
   !> Print a note where a search will take differences of runs in place of derivatives.
-  subroutine print_differences(unit, start, synthesis)
+  subroutine print_differences(unit, search)
     integer, intent(in) :: unit                         !< Fortran unit to write to
-    type(state_type), intent(in) :: start               !< the closed position of the data file
-    type(synthesis_type), intent(inout) :: synthesis    !< makes runs for quantities, if it needs any
+    type(optimum_search_type), intent(inout) :: search  !< prepared; makes runs for quantities, if it needs any
     type(error_type), allocatable :: err
     logical :: known
 
-    if (.not. allocated(synthesis%space%evaluator)) return
-    call synthesis%space%evaluator%judge_gradient(synthesis%space%values, start%q, known, err)
+    if (.not. allocated(search%synthesis%space%evaluator)) return
+    call search%synthesis%space%evaluator%judge_gradient(search%synthesis%space%values, search%start%q, known, err)
     if (known) return
     if (allocated(err)) then
       call explain(err)

@@ -1,16 +1,13 @@
-!> The report of a free motion.
-module mech9_dynamic_report
+!> The lines at the end of a run under forces.
+module mech9_free_run_text
   use mech9_result_units, only: length_text, inertia_unit_of
-  use mech9_kinds, only: wp
   use mech9_text, only: to_text
   use mech9_counted, only: counted
   use mech9_number_lists, only: same_numbers
-  use mech9_row_layout, only: write_coefficients, take_changes, write_events
-  use mech9_hdf5_sink, only: hdf5_sink_type
   use mech9_part_names, only: part_names_type
   use mech9_named_words, only: with_names, named_list
   use mech9_mechanism, only: mechanism_type
-  use mech9_plan, only: plan_type
+  use mech9_model, only: model_type
   use mech9_check_notes, only: print_run_notes
   use mech9_model_motion, only: model_motion_type
   use mech9_run_outcome, only: run_outcome_type
@@ -22,34 +19,24 @@ module mech9_dynamic_report
   use mech9_run_words, only: duration, each
   use mech9_energy_text, only: words_of_energy_change
   use mech9_run_facts, only: method_of
-  use mech9_run_report, only: run_report_type
   implicit none
   private
-  public :: dynamic_report_type, print_coefficients
-
-  type, extends(run_report_type) :: dynamic_report_type
-  contains
-    procedure, nopass :: print => print_report
-    procedure, nopass :: write_start
-    procedure, nopass :: write_end
-  end type dynamic_report_type
+  public :: print_free_run, print_coefficients
 
   !> Events that are printed before the last one.
   integer, parameter :: printed_events = 10
 
 contains
 
-  !> Print the short report of a run.
-  subroutine print_report(unit, motion, table_path, outcome)
-    integer, intent(in) :: unit                               !< Fortran unit to write to
-    type(model_motion_type), intent(inout) :: motion          !< the motion, as far as it went
-    character(len=*), intent(in) :: table_path                !< path of the table; '-': standard output; empty: none
-    type(run_outcome_type), intent(in) :: outcome       !< number of rows, and the times for solving and writing
-    type(free_simulation_type), pointer :: simulation
+  !> Print the lines.
+  subroutine print_free_run(unit, simulation, table_path, outcome)
+    integer, intent(in) :: unit                              !< Fortran unit to write to
+    type(free_simulation_type), intent(inout) :: simulation  !< the motion, as far as it went
+    character(len=*), intent(in) :: table_path               !< path of the table; '-': standard output; empty: none
+    type(run_outcome_type), intent(in) :: outcome            !< number of rows, and the times for solving and writing
     type(integration_statistics_type) :: counts
     integer :: i
 
-    simulation => motion%free()
     counts = simulation%motion%statistics()
     write (unit, '(a)') counted(outcome%rows, 'output')//': '//duration(outcome%seconds_solving)//' to solve, '// &
       duration(outcome%seconds_writing)//' to write'
@@ -78,7 +65,7 @@ contains
                       simulation%model%mechanism)
     call print_run_notes(unit, simulation%model, .true.)
     if (table_path /= '' .and. table_path /= '-') write (unit, '(2a)') 'table: ', table_path
-  end subroutine print_report
+  end subroutine print_free_run
 
   !> The steps of the implicit one of two methods.
   pure function by_bdf(counts) result(words)
@@ -130,43 +117,22 @@ contains
   end function change_words
 
   !> Print the coefficients of motion a(p,r) at the start, p and r the numbers of the independent coordinates.
-  subroutine print_coefficients(unit, mechanism, plan, coefficients)
-    integer, intent(in) :: unit                  !< the output unit
-    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    type(plan_type), intent(in) :: plan          !< the plan of the mechanism
-    real(wp), intent(in) :: coefficients(:, :)   !< lower triangle
+  subroutine print_coefficients(unit, model, motion)
+    integer, intent(in) :: unit                            !< Fortran unit to write to
+    type(model_type), intent(in) :: model                  !< the model
+    type(model_motion_type), intent(inout) :: motion       !< its free motion, prepared
+    type(free_simulation_type), pointer :: simulation
     integer :: p, r
 
+    simulation => motion%free()
     write (unit, '(a)') 'coefficients of motion (mass matrix) at the start:'
-    do p = 1, size(plan%independent)
-      do r = p, size(plan%independent)
-        write (unit, '(2x,a,es24.16)') 'a('//to_text(plan%independent(p))//','//to_text(plan%independent(r))//') =', &
-          coefficients(r, p)/inertia_unit_of(mechanism, plan%independent(p), plan%independent(r))
+    associate (independent => motion%plan%independent)
+      do p = 1, size(independent)
+        do r = p, size(independent)
+          write (unit, '(2x,a,es24.16)') 'a('//to_text(independent(p))//','//to_text(independent(r))//') =', &
+            simulation%coefficients(r, p)/inertia_unit_of(model%mechanism, independent(p), independent(r))
+        end do
       end do
-    end do
+    end associate
   end subroutine print_coefficients
-
-  !> Write the coefficients of motion as data sets, and make data sets for changes of coordinates.
-  subroutine write_start(hdf5, motion)
-    type(hdf5_sink_type), intent(inout) :: hdf5            !< the open file of results
-    type(model_motion_type), intent(inout) :: motion       !< the motion, prepared
-    type(free_simulation_type), pointer :: simulation
-
-    simulation => motion%free()
-    call write_coefficients(hdf5%file, motion%plan, simulation)
-    call hdf5%begin_changes(size(motion%plan%independent))
-  end subroutine write_start
-
-  !> Write the changes of the independent coordinates and the events as data sets.
-  subroutine write_end(hdf5, motion)
-    type(hdf5_sink_type), intent(inout) :: hdf5            !< the open file of results
-    type(model_motion_type), intent(inout) :: motion       !< the motion, as far as it went
-    type(free_simulation_type), pointer :: simulation
-    real(wp), allocatable :: rows(:, :)
-
-    simulation => motion%free()
-    call take_changes(simulation, rows)
-    call hdf5%write_changes(rows)
-    call write_events(hdf5%file, simulation)
-  end subroutine write_end
-end module mech9_dynamic_report
+end module mech9_free_run_text

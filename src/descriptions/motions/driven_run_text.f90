@@ -1,5 +1,5 @@
-!> The report of a driven motion.
-module mech9_kinematic_report
+!> The lines at the end of a driven run.
+module mech9_driven_run_text
   use mech9_program_kind, only: dynamics
   use mech9_text, only: to_text
   use mech9_counted, only: counted
@@ -12,36 +12,27 @@ module mech9_kinematic_report
   use mech9_check_notes, only: print_run_notes
   use mech9_friction_text, only: print_rest
   use mech9_driven_simulation, only: driven_simulation_type
-  use mech9_model_motion, only: model_motion_type
   use mech9_run_outcome, only: run_outcome_type
   use mech9_run_words, only: duration, each
   use mech9_run_facts, only: iterations_each
-  use mech9_run_report, only: run_report_type
   implicit none
   private
-  public :: kinematic_report_type
-
-  type, extends(run_report_type) :: kinematic_report_type
-  contains
-    procedure, nopass :: print => print_report
-  end type kinematic_report_type
+  public :: print_driven_run
 
 contains
 
-  !> Print the short report of a run.
-  subroutine print_report(unit, motion, table_path, outcome)
-    integer, intent(in) :: unit                           !< Fortran unit to write to
-    type(model_motion_type), intent(inout) :: motion      !< the motion, as far as it went
-    character(len=*), intent(in) :: table_path            !< path of the table; '-': standard output; empty: none
-    type(run_outcome_type), intent(in) :: outcome   !< number of rows, and the times for solving and writing
-    type(driven_simulation_type), pointer :: simulation
+  !> Print the lines.
+  subroutine print_driven_run(unit, simulation, table_path, outcome)
+    integer, intent(in) :: unit                               !< Fortran unit to write to
+    type(driven_simulation_type), intent(in) :: simulation    !< the motion, as far as it went
+    character(len=*), intent(in) :: table_path                !< path of the table; '-': standard output; empty: none
+    type(run_outcome_type), intent(in) :: outcome             !< number of rows, and the times for solving and writing
 
-    simulation => motion%driven()
     call print_motion(unit, simulation%model, simulation%plan, table_path, outcome, simulation%driven)
     if (allocated(simulation%frictions)) call print_rest(unit, simulation%model%mechanism, simulation%frictions%rest)
-  end subroutine print_report
+  end subroutine print_driven_run
 
-  !> Print the lines.
+  !> Print the lines about the motion.
   subroutine print_motion(unit, model, plan, table_path, outcome, driven)
     integer, intent(in) :: unit                           !< Fortran unit to write to
     type(model_type), intent(in) :: model                 !< the model
@@ -72,5 +63,4 @@ contains
     call print_run_notes(unit, model, model%program == dynamics .or. model%request%output%with_forces())
     if (table_path /= '' .and. table_path /= '-') write (unit, '(2a)') 'table: ', table_path
   end subroutine print_motion
-
-end module mech9_kinematic_report
+end module mech9_driven_run_text

@@ -8,7 +8,7 @@ module mech9_design_motion
   use mech9_state, only: state_type
   use mech9_frame_motion, only: point_motion
   use mech9_run, only: run_type
-  use mech9_signal_interruption, only: signal_interruption_type
+  use mech9_simulation, only: interruption_type
   use mech9_film, only: film_type, new_film
   implicit none
   private
@@ -77,12 +77,12 @@ contains
   end subroutine visit
 
   !> Make a film of the run. Points of link 1 are shown with it.
-  subroutine make_film(self, shown, film, err)
+  subroutine make_film(self, shown, interruption, film, err)
     class(design_motion_type), intent(inout), target :: self  !< the motion
     type(model_type), intent(in) :: shown                     !< the model with other points
+    class(interruption_type), intent(inout), target :: interruption   !< is asked whether the run shall stop
     type(film_type), intent(out) :: film                      !< of the run
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
-    type(signal_interruption_type), pointer :: interruption
     type(plan_type), pointer :: plan
     type(state_type), pointer :: state
     real(wp), allocatable :: row(:)
@@ -91,7 +91,6 @@ contains
 
     call self%run%prepare(self%model, err, pictures=.true.)
     if (allocated(err)) return
-    allocate (interruption)
     self%run%source%interruption => interruption
     allocate (row(self%run%source%columns%width()), source=0.0_wp)
     film = new_film(shown%mechanism, shown%problem%partition%independent(), shown%request%time%intervals + 1, &
@@ -107,6 +106,5 @@ contains
       if (allocated(err)) exit
     end do
     self%run%source%interruption => null()
-    deallocate (interruption)
   end subroutine make_film
 end module mech9_design_motion

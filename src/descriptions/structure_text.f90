@@ -11,12 +11,17 @@ module mech9_structure_text
   use mech9_structural_vectors, only: structural_vectors_type
   use mech9_joint_expansion, only: shown_vectors
   use mech9_plan, only: plan_type
-  use mech9_mobility_report, only: mobility_report_type, idle_type
+  use mech9_partition, only: partition_type
+  use mech9_model_motion, only: model_motion_type
+  use mech9_document, only: document_type
+  use mech9_diagnostics, only: diagnostics_type
+  use mech9_reader, only: read_structure_only
+  use mech9_mobility_report, only: mobility_report_type, idle_type, report_mobility
   use mech9_block_names, only: chain_names
   use mech9_joint_words, only: joint_name
   implicit none
   private
-  public :: print_structure, print_names_of_vectors, print_mobility, print_mobility_report, print_marked
+  public :: print_structure, print_structure_of, print_mobility, print_mobility_of, print_mobility_report, print_marked
 
   !> Most lines of one kind.
   integer, parameter :: most_lines = 40
@@ -133,6 +138,32 @@ contains
       call print_idle(unit, mechanism%structure, mechanism%names, report%idle(i))
     end do
   end subroutine print_mobility_report
+
+  !> Write mobility and ranks of an assembled motion, as print_mobility_report does.
+  subroutine print_mobility_of(unit, mechanism, motion)
+    integer, intent(in) :: unit                       !< Fortran unit to write to
+    type(mechanism_type), intent(in) :: mechanism     !< the mechanism
+    type(model_motion_type), intent(in) :: motion     !< its motion, assembled
+    type(mobility_report_type) :: report
+
+    call report_mobility(mechanism, motion%plan, motion%start, report)
+    call print_mobility_report(unit, mechanism, motion%plan, report)
+  end subroutine print_mobility_of
+
+  !> Read the structure of a document, and write it; nothing where it has errors. The names of the vectors go to another unit.
+  subroutine print_structure_of(unit, names_unit, document, diagnostics)
+    integer, intent(in) :: unit                             !< Fortran unit to write to
+    integer, intent(in) :: names_unit                       !< Fortran unit for the names; 0: they are not written
+    type(document_type), intent(in) :: document             !< the data file as groups and items
+    type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
+    type(structure_type) :: structure
+    type(partition_type) :: partition
+
+    call read_structure_only(document, structure, partition, diagnostics)
+    if (diagnostics%failed()) return
+    if (names_unit /= 0) call print_names_of_vectors(names_unit, diagnostics%names)
+    call print_structure(unit, structure, partition%vectors)
+  end subroutine print_structure_of
 
   !> Write that a coupling follows from others, or from closed chains.
   subroutine print_repetition(unit, coupling, chains)

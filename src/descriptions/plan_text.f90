@@ -6,18 +6,19 @@ module mech9_plan_text
   use mech9_counted, only: counted
   use mech9_screw, only: split_space
   use mech9_mechanism, only: mechanism_type
+  use mech9_model, only: model_type
   use mech9_part_names, only: part_names_type
   use mech9_explanation, only: explain_failure
   use mech9_structure, only: structure_type
   use mech9_plan, only: plan_type, block_type, closure_type, step_type
-  use mech9_requested, only: requested_type, requested_blocks
+  use mech9_requested, only: requested_type, requested_blocks, requested_by_results
   use mech9_lagrange_types, only: dynamics_plan_type
   use mech9_dynamics_plan, only: make_dynamics_plan
   use mech9_structure_text, only: print_marked
   use mech9_joint_words, only: shown_of, link_name, joint_name
   implicit none
   private
-  public :: print_plan
+  public :: print_plan_of_results, print_plan
 
   !> Significant digits of directions.
   integer, parameter :: digits_shown = 6
@@ -48,6 +49,16 @@ contains
     end do
     if (size(mechanism%bodies) > 0) call print_dynamics_plan(unit, mechanism, plan)
   end subroutine print_plan
+
+  !> Write the plan, as print_plan does, for the results that a model requests.
+  subroutine print_plan_of_results(unit, model, plan, with_pictures)
+    integer, intent(in) :: unit               !< Fortran unit to write to
+    type(model_type), intent(in) :: model     !< the model
+    type(plan_type), intent(in) :: plan       !< its plan
+    logical, intent(in) :: with_pictures      !< the motion of all links is requested, too
+
+    call print_plan(unit, model%mechanism, plan, requested_by_results(model%mechanism, model%request%output, with_pictures))
+  end subroutine print_plan_of_results
 
   !> Write one block: its links, equations and chains.
   subroutine print_block(unit, structure, names, plan, block, number, is_needed)

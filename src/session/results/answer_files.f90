@@ -1,0 +1,66 @@
+!> Files of answers that are no runs: a table of all rows at once, and an HDF5 file with the origin of its numbers.
+module mech9_answer_files
+  use mech9_kinds, only: wp
+  use mech9_error, only: error_type
+  use mech9_command_line, only: command_line_type
+  use mech9_model, only: model_type
+  use mech9_heading, only: heading_type
+  use mech9_table, only: table_type
+  use mech9_hdf5_file, only: hdf5_file_type
+  use mech9_structure_layout, only: write_structure, write_coordinates
+  use mech9_hdf5_record, only: write_provenance
+  use mech9_version, only: name_and_version
+  implicit none
+  private
+  public :: save_table, begin_file, end_file
+
+contains
+
+  !> Save a table.
+  subroutine save_table(path, options, model, heading, rows, err)
+    character(len=*), intent(in) :: path                !< of the file; '-' is standard output, and where it is empty there is no table
+    type(command_line_type), intent(in) :: options      !< the command line
+    type(model_type), intent(in) :: model               !< the model
+    type(heading_type), intent(in) :: heading           !< of the columns
+    real(wp), intent(in), contiguous :: rows(:, :)      !< (columns, rows)
+    type(error_type), allocatable, intent(out) :: err   !< allocated if the file cannot be written
+    type(error_type), allocatable :: at_close
+    type(heading_type) :: shown
+    type(table_type) :: table
+
+    if (path == '') return
+    shown = heading
+    if (options%has('names')) call shown%call_by_names(model%mechanism%names)
+    call table%open(path, shown, name_and_version(model%program), err)
+    if (allocated(err)) return
+    call table%write_rows(rows, err)
+    call table%close(at_close)
+    if (.not. allocated(err)) call move_alloc(at_close, err)
+  end subroutine save_table
+
+  !> Create an HDF5 file with the origin of its numbers, the structure and the coordinates.
+  subroutine begin_file(path, options, model, data_text, file, err)
+    character(len=*), intent(in) :: path                !< of the file
+    type(command_line_type), intent(in) :: options      !< the command line
+    type(model_type), intent(in) :: model               !< the model
+    character(len=*), intent(in) :: data_text           !< text of the data file
+    type(hdf5_file_type), intent(inout) :: file         !< the open file
+    type(error_type), allocatable, intent(out) :: err   !< allocated if the file cannot be written
+
+    call file%create(path, err)
+    if (allocated(err)) return
+    call write_coordinates(file, model)
+    call write_provenance(file, options, model, data_text)
+    call write_structure(file, model)
+  end subroutine begin_file
+
+  !> Write all to the file and close it.
+  subroutine end_file(file, err)
+    type(hdf5_file_type), intent(inout) :: file         !< the open file
+    type(error_type), allocatable, intent(out) :: err   !< the first failure of the file
+
+    call file%flush()
+    call file%close()
+    if (allocated(file%failure)) err = file%failure
+  end subroutine end_file
+end module mech9_answer_files
