@@ -23,7 +23,10 @@ module mech9_study_task
   use mech9_study_threads, only: threads_of_machine, threads_for, has_threads
   use mech9_study_propagation, only: propagation_type, propagate
   use mech9_section_results, only: check_section_plots, write_section_files, print_section
-  use mech9_study_words, only: print_study, save_study_report
+  use mech9_study_words, only: print_study
+  use mech9_json, only: json_type
+  use mech9_report_parts, only: begin_report
+  use mech9_study_report, only: add_study
   implicit none
   private
   public :: work_on_study
@@ -183,6 +186,7 @@ contains
     type(study_runs_type) :: runs
     type(propagation_type), allocatable :: propagation(:)
     type(signal_interruption_type), target :: interruption
+    type(json_type) :: json
     type(error_type), allocatable :: err, without_shares, of_section
     real(wp) :: clock
     integer :: threads
@@ -204,7 +208,7 @@ contains
       call interruption%words%start(model%program, 'no derivatives at the means yet', 'their run', quiet, with_progress=.false.)
       call propagate(model, varied, interruption, propagation, without_shares)
     end if
-    if (.not. quiet) call print_study(error_unit, model, quantities, runs%sums, runs%statistics, propagation, clock)
+    if (.not. quiet) call print_study(error_unit, model, quantities, runs, propagation, clock)
     if (.not. quiet .and. allocated(without_shares)) &
       write (error_unit, '(a)') 'note: no shares by derivatives: '//without_shares%message
     if (.not. quiet .and. kept) call results%print_paths(error_unit)
@@ -227,8 +231,10 @@ contains
       if (allocated(err)) call diagnostics%add_error(err)
     end if
     if (.not. options%has('report')) return
-    call save_study_report(options%argument('report'), model, quantities, runs%values, runs%sums, &
-                           runs%statistics, propagation, results%paths%table, diagnostics, err)
+    call begin_report(json, model, diagnostics, results%paths%table)
+    call add_study(json, model, quantities, runs, propagation)
+    call json%end_object()
+    call json%save(options%argument('report'), err)
     reported = .true.
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine carry_out

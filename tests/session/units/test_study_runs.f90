@@ -164,7 +164,7 @@ contains
     end do
     call remove_file(stem//'.dat')
     open (newunit=unit, file=stem//'.txt')
-    call print_study(unit, this%model, this%quantities, runs%sums, runs%statistics, [propagation_type ::], 1.5_wp)
+    call print_study(unit, this%model, this%quantities, runs, [propagation_type ::], 1.5_wp)
     call text_of_unit(tester, unit, text)
     call tester%is_true(index(text, '6 runs: 1.5 s'//eol) == 1 .and. index(text, 'x: 1.1 to 2.3 m'//eol) > 0, 'words: '//text)
   end subroutine order
