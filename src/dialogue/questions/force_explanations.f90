@@ -228,7 +228,7 @@ module mech9_force_explanations
     explanation_type('contact', 'link', '', &
                   'The number of the link with the surface: 1 for the frame.', '1'), &
     explanation_type('contact', 'kind', '', &
-                  'The surface is a plane, or a sphere.', 'plane'), &
+                  'The surface is a plane, a sphere, or a path: a curve in a plane, and along the axis of this plane.', 'plane'), &
     explanation_type('contact', 'origin', '', &
                   'A point of the plane, the centre of the sphere, or the origin of the path, in the system of its link.', &
                   '0 0 0'), &

@@ -23,8 +23,9 @@ contains
     call fixed_groups(document, diagnostics%sources, groups)
     call first_difference(made, groups, group, line_made, line_given)
     if (group == '') return
-    if (line_made == '') line_made = 'nothing'
-    if (line_given == '') line_given = 'nothing'
+    ! a group that ends sooner has / in place of a name
+    if (line_made == '' .or. line_made == '/') line_made = 'nothing'
+    if (line_given == '' .or. line_given == '/') line_given = 'nothing'
     call raise(err, exit_data, 'this program was made for the mechanism of '//name//', and '//group//' differs: there "'// &
                line_made//'", here "'//line_given//'"; take the general program, or make one for this file by '// &
                'mech9-link --specialise')

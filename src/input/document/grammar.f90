@@ -43,7 +43,7 @@ module mech9_grammar
     group_row_type('friction', .true., '', for_forces, &
                    'dry friction in a turning, sliding or helical pair, by the force that the pair passes on'), &
     group_row_type('contact', .true., '', both, &
-                   'a ball about a traced point, or the point, that may touch a plane or a ball of another link'), &
+                   'a ball about a traced point, or the point, that may touch a plane, a sphere or a path of another link'), &
     group_row_type('cam', .true., '', kinematics, &
                    'a cam whose profile mech9k computes from the motion of its follower (option --cam)'), &
     group_row_type('parameter', .true., 'name', both, &
