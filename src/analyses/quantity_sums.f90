@@ -21,6 +21,7 @@ module mech9_quantity_sums
     procedure :: begin_extremes
     procedure :: add_value
     procedure :: add_piece
+    procedure :: add_chords
     procedure :: add_extremes
     procedure :: result_of
   end type quantity_sums_type
@@ -82,6 +83,26 @@ contains
     self%last = values(rule%n)
     call self%add_extremes(rule, from, to, values)
   end subroutine add_piece
+
+  !> Go on over values between which nothing is known, as where the column jumps: extremes are those of the values, integrals those of
+  !> chords.
+  pure subroutine add_chords(self, times, values)
+    class(quantity_sums_type), intent(inout) :: self   !< the sums
+    real(wp), intent(in) :: times(:)                   !< (values) in their order [s]
+    real(wp), intent(in) :: values(:)                  !< of the column
+    real(wp) :: h
+    integer :: i
+
+    call self%add_value(times(1), values(1))
+    do i = 2, size(values)
+      call self%add_value(times(i), values(i))
+      h = times(i) - times(i - 1)
+      self%duration = self%duration + h
+      self%integral = self%integral + 0.5_wp*h*(values(i - 1) + values(i))
+      self%square = self%square + 0.5_wp*h*(values(i - 1)**2 + values(i)**2)
+    end do
+    self%last = values(size(values))
+  end subroutine add_chords
 
   !> Find the extremes of a polynomial. An extreme between two points counts where the polynomial is resolved: it then exceeds
   !> the points by less than their difference from their neighbours.

@@ -2,7 +2,8 @@
 !>
 !> A column that comes with its rate and acceleration, or is one of these, is a polynomial through four neighbouring outputs with
 !> two derivatives each. Others are polynomials through values at further times, which the motion must visit. No polynomial goes
-!> across a joint of a law: the motion visits both sides of a joint, which count as outputs here. The derivatives of the column by
+!> across a joint of a law: the motion visits both sides of a joint, which count as outputs here. None goes across an event at which the
+!> column jumps, whose time is not known before: chords take its place between two outputs. The derivatives of the column by
 !> parameters are followed by polynomials of the same kind, so that they are those of the number that is found.
 module mech9_tracked_quantity
   use mech9_kinds, only: wp
@@ -129,16 +130,19 @@ contains
   end subroutine begin_piece
 
   !> End an interval between outputs, or end a piece at a joint.
-  pure subroutine end_piece(self, rule, piece, row, values, changes)
+  pure subroutine end_piece(self, rule, piece, jump, row, values, changes)
     class(tracked_quantity_type), intent(inout) :: self   !< the quantity
     type(chebyshev_type), intent(in) :: rule              !< points in an interval
     type(smooth_piece_type), intent(in) :: piece          !< the interval
+    integer, intent(in) :: jump                           !< lowest derivative of positions that jumps within it; 3: none
     real(wp), intent(in) :: row(:)                        !< numbers at its end, time first
     real(wp), intent(in) :: values(:)                     !< (rule%n) of its column, those at both ends included, if it needs them
     real(wp), intent(in) :: changes(:, :)                 !< (P,rule%n) its derivatives by parameters, where they are followed
 
     if (.not. self%follows()) return
-    if (self%family(0) == 0) then
+    if (is_broken(self, jump)) then
+      call take_chords(self, rule, piece, row, values)
+    else if (self%family(0) == 0) then
       call take_values(self, rule, piece, row(1), values, changes)
     else
       if (self%count == most_outputs) call forget_first(self)
@@ -147,10 +151,44 @@ contains
       if (self%count > 2) call add_intervals(self, rule, self%count - 2)
     end if
     if (.not. allocated(piece%to_rate)) return
-    if (self%family(0) > 0) call add_intervals(self, rule, self%count - 1)
+    if (self%family(0) > 0 .and. self%count > 1) call add_intervals(self, rule, self%count - 1)
     self%is_cut = .true.
     self%value_before = row(self%column)
   end subroutine end_piece
+
+  !> Whether events within an interval leave no polynomial for the column there. Positions go on through an impact, so that their sums
+  !> do, and those of rates are the ways. Where derivatives by parameters are followed, such quantities are refused.
+  pure logical function is_broken(self, jump)
+    type(tracked_quantity_type), intent(in) :: self       !< the quantity
+    integer, intent(in) :: jump                           !< lowest derivative of positions that jumps in the interval; 3: none
+    logical :: sums
+
+    is_broken = jump <= 2 .and. .not. allocated(self%changes)
+    if (self%family(0) == 0) return
+    sums = any(self%take == [character(len=8) :: 'mean', 'integral'])
+    if (self%order == 0) is_broken = is_broken .and. jump == 1 .and. .not. (sums .or. self%take == 'rms')
+    if (self%order == 1) is_broken = is_broken .and. .not. sums
+  end function is_broken
+
+  !> Take an interval into account over which no polynomial goes. A new one begins at its end.
+  pure subroutine take_chords(self, rule, piece, row, values)
+    type(tracked_quantity_type), intent(inout) :: self    !< the quantity
+    type(chebyshev_type), intent(in) :: rule              !< points in an interval
+    type(smooth_piece_type), intent(in) :: piece          !< the interval
+    real(wp), intent(in) :: row(:)                        !< numbers at its end, time first
+    real(wp), intent(in) :: values(:)                     !< (rule%n) of its column, those at both ends included, if it needs them
+    real(wp), allocatable :: no_joint(:)
+
+    if (self%family(0) == 0) then
+      call self%sums%add_chords(piece%from + 0.5_wp*(row(1) - piece%from)*(1.0_wp + rule%points), values)
+      return
+    end if
+    if (self%count > 1) call add_intervals(self, rule, self%count - 1)
+    call self%sums%add_chords([self%t(self%count), row(1)], [self%y(self%order, self%count), row(self%column)])
+    self%count = 0
+    self%done = 0
+    call keep_output(self, row, no_joint)
+  end subroutine take_chords
 
   !> Keep an output for polynomials.
   pure subroutine keep_output(self, row, rate)

@@ -5,6 +5,7 @@ module mech9_quantity_pieces
   use mech9_model, only: model_type
   use mech9_tangent, only: tangent_type
   use mech9_smooth_pieces, only: smooth_piece_type, smooth_pieces_type
+  use mech9_motion_event, only: motion_events_type
   use mech9_tracked_quantity, only: tracked_quantity_type
   implicit none
   private
@@ -103,12 +104,13 @@ contains
   end subroutine find_pieces
 
   !> Take a row between the output before and the next one.
-  subroutine take_between(self, model, tracked, row, next)
+  subroutine take_between(self, model, tracked, row, next, events)
     class(quantity_pieces_type), intent(inout) :: self        !< the pieces, which have taken all rows before this one
     type(model_type), intent(in) :: model                     !< the model
     type(tracked_quantity_type), intent(inout) :: tracked(:)  !< the quantities
     real(wp), intent(in) :: row(:)                            !< numbers of the row, time first
     real(wp), intent(in) :: next                              !< time of the next output [s]
+    type(motion_events_type), intent(in) :: events            !< of the motion so far
     integer :: k
 
     if (.not. self%follows) return
@@ -118,7 +120,7 @@ contains
     if (k == 1) then
       call begin_piece(self, tracked, row, self%list(self%current)%from_rate)
     else if (k == points_between) then
-      call end_piece(self, tracked, row)
+      call end_piece(self, tracked, row, events)
       self%current = self%current + 1
     else if (k > 0) then
       call keep_values(self, tracked, k, row)
@@ -126,18 +128,19 @@ contains
   end subroutine take_between
 
   !> Take the row of an output. One at a joint is no end of a piece: rows on both sides of the joint are.
-  subroutine take_output(self, model, tracked, row)
+  subroutine take_output(self, model, tracked, row, events)
     class(quantity_pieces_type), intent(inout) :: self        !< the pieces
     type(model_type), intent(in) :: model                     !< the model
     type(tracked_quantity_type), intent(inout) :: tracked(:)  !< the quantities
     real(wp), intent(in) :: row(:)                            !< numbers of the output, time first
+    type(motion_events_type), intent(in) :: events            !< of the motion so far
     real(wp), allocatable :: no_joint(:)
 
     if (.not. self%follows) return
     if (self%is_started) then
       call find_pieces(self, model, row(1))
       if (self%current <= size(self%list)) then
-        call end_piece(self, tracked, row)
+        call end_piece(self, tracked, row, events)
         call keep_values(self, tracked, 1, row)
       end if
       deallocate (self%list)
@@ -177,16 +180,18 @@ contains
   end subroutine begin_piece
 
   !> End the present piece of each quantity.
-  pure subroutine end_piece(self, tracked, row)
+  pure subroutine end_piece(self, tracked, row, events)
     type(quantity_pieces_type), intent(inout) :: self         !< the pieces
     type(tracked_quantity_type), intent(inout) :: tracked(:)  !< the quantities
     real(wp), intent(in) :: row(:)                            !< numbers at its end
-    integer :: i
+    type(motion_events_type), intent(in) :: events            !< of the motion so far
+    integer :: i, jump
 
     call keep_values(self, tracked, points_between, row)
     associate (piece => self%list(self%current))
+      jump = events%first_jump(piece%from, piece%to)
       do i = 1, size(tracked)
-        call tracked(i)%end_piece(self%rule, piece, row, self%values(:, i), self%changes(:, :, i))
+        call tracked(i)%end_piece(self%rule, piece, jump, row, self%values(:, i), self%changes(:, :, i))
       end do
     end associate
   end subroutine end_piece

@@ -8,6 +8,7 @@ module mech9_quantity_record
   use mech9_tangent, only: tangent_type
   use mech9_tracked_quantity, only: tracked_quantity_type
   use mech9_quantity_pieces, only: quantity_pieces_type
+  use mech9_motion_event, only: motion_events_type
   use mech9_columns, only: columns_type
   use mech9_missing_column, only: find_remedy
   implicit none
@@ -204,28 +205,30 @@ contains
   end subroutine times_before
 
   !> Take a row between the output before and the next one.
-  subroutine take_between(self, model, row, next)
+  subroutine take_between(self, model, row, next, events)
     class(quantity_record_type), intent(inout) :: self  !< the record, which has taken all rows before this one
     type(model_type), intent(in) :: model               !< the model
     real(wp), intent(in) :: row(:)                      !< numbers of the row, time first
     real(wp), intent(in) :: next                        !< time of the next output [s]
+    type(motion_events_type), intent(in) :: events      !< of the motion so far
 
     call take_times(self, row)
-    call self%pieces%take_between(model, self%tracked, row, next)
+    call self%pieces%take_between(model, self%tracked, row, next, events)
   end subroutine take_between
 
   !> Take the row of an output.
-  subroutine take_output(self, model, row)
+  subroutine take_output(self, model, row, events)
     class(quantity_record_type), intent(inout) :: self  !< the record
     type(model_type), intent(in) :: model               !< the model
     real(wp), intent(in) :: row(:)                      !< numbers of the output, time first
+    type(motion_events_type), intent(in) :: events      !< of the motion so far
     integer :: i
 
     do i = 1, size(self%tracked)
       call self%tracked(i)%take_output(row)
     end do
     call take_times(self, row)
-    call self%pieces%take_output(model, self%tracked, row)
+    call self%pieces%take_output(model, self%tracked, row, events)
   end subroutine take_output
 
   !> Take a row for the quantities that are values at its time.

@@ -378,7 +378,8 @@ contains
       else
         if (allocated(self%sensitivity)) call self%columns%fill_sensitivities(self%sensitivity%changes, first, 1, &
                                                                               self%wanted_between, self%between(:, first:first))
-        call self%quantities%take_between(self%simulation%model, self%between(:, first), self%next_output(first))
+        call self%quantities%take_between(self%simulation%model, self%between(:, first), self%next_output(first), &
+                                          self%simulation%events)
       end if
       first = last + 1
     end do
@@ -397,7 +398,7 @@ contains
       call self%columns%fill_sensitivities(self%sensitivity%changes, first, size(rows, 2), self%wanted, rows)
     if (self%quantities%is_empty()) return
     do i = 1, size(rows, 2)
-      call self%quantities%take_output(self%simulation%model, rows(:, i))
+      call self%quantities%take_output(self%simulation%model, rows(:, i), self%simulation%events)
     end do
   end subroutine complete_outputs
 

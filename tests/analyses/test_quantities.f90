@@ -131,7 +131,7 @@ contains
         end do
         piece%from = from
         piece%to = to
-        call quantity%end_piece(rule, piece, row_at(to), values, changes)
+        call quantity%end_piece(rule, piece, 3, row_at(to), values, changes)
       end if
       from = to
     end do

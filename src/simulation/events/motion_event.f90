@@ -29,6 +29,7 @@ module mech9_motion_event
   contains
     procedure :: add
     procedure :: judge_progress
+    procedure :: first_jump
   end type motion_events_type
 
 contains
@@ -69,4 +70,22 @@ contains
     if (stalls .or. self%count == before .or. self%count <= most_events_at_once) return
     stalls = .not. abs(self%items(self%count)%t - self%items(self%count - most_events_at_once)%t) > 0.0_wp
   end subroutine judge_progress
+
+  !> The lowest derivative of positions in time that jumps behind one time, up to another one that has come: 1 rates, 2 accelerations, 3
+  !> none. The last events are looked at first.
+  pure integer function first_jump(self, from, to) result(jump)
+    class(motion_events_type), intent(in) :: self   !< the events so far
+    real(wp), intent(in) :: from                    !< the time before [s]
+    real(wp), intent(in) :: to                      !< the time that has come [s]
+    real(wp) :: direction
+    integer :: i
+
+    jump = 3
+    direction = sign(1.0_wp, to - from)
+    do i = self%count, 1, -1
+      if ((self%items(i)%t - from)*direction <= 0.0_wp) return
+      if ((self%items(i)%t - to)*direction > 0.0_wp) cycle
+      jump = min(jump, merge(1, 2, self%items(i)%kind == event_impact))
+    end do
+  end function first_jump
 end module mech9_motion_event
