@@ -26,7 +26,8 @@ module mech9_integrated_motion
   use mech9_friction_events, only: choose_modes, fail_undecided
   use mech9_held_coordinates, only: choose_held, hold_by_drives
   use mech9_motion_event, only: motion_events_type
-  use mech9_event_variation, only: event_variation_type, impact_type, meet_rubbing
+  use mech9_event_variation, only: event_variation_type, meet_rubbing
+  use mech9_varied_impact, only: impact_type
   use mech9_impact_watcher, only: impact_watcher_type
   use mech9_side_steps, only: side_steps_type, begin_integration
   implicit none

@@ -84,7 +84,7 @@ contains
     case (cause_contact_rest)
       text = place//' comes to rest without an acceleration'
     case (cause_rubbing_impact)
-      text = place//' has friction, and takes part in an impact'
+      text = place//' is hit, and its friction just stops the slip'
     case (cause_drive_jumps)
       text = 'the rate of a drive jumps while a stop or friction holds a coordinate'
     case (cause_followed)

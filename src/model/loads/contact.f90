@@ -168,8 +168,8 @@ contains
     is_hidden = on_whole%distance > 0.0_wp
   end function is_hidden
 
-  !> The derivative in time of the velocity of the ball against the surface where they touch, fixed axes [m/s^2]; its part along the normal
-  !> is the second derivative of the gap.
+  !> The derivative in time of the velocity of the ball against the surface where they touch, fixed axes [m/s^2]: its part along the normal
+  !> is the second derivative of the gap, those along the tangents are derivatives of the slip.
   pure function acceleration(self, place, ball, surface, a_center, alpha_ball, a_surface, alpha_surface)
     class(contact_type), intent(in) :: self        !< the contact
     type(contact_place_type), intent(in) :: place  !< its place
@@ -184,8 +184,8 @@ contains
     at_rate = ball%point_velocity(self%center) - self%radius*place%normal_rate
     acceleration = a_center - self%radius*(cross(alpha_ball, place%normal) + cross(ball%omega, place%normal_rate)) &
                    - a_surface - cross(alpha_surface, place%at - surface%p) - cross(surface%omega, at_rate - surface%v)
-    ! the normal turns: the rate of the gap changes with it, too
-    acceleration = acceleration + dot_product(place%normal_rate, place%slip)*place%normal
+    ! the normal turns: the rate of the gap changes with it, too, and along the surface it is no part of the slip
+    acceleration = acceleration + dot_product(place%normal_rate, place%slip)*place%normal - place%gap_rate()*place%normal_rate
   end function acceleration
 
   !> The force of a compliant contact, along the normal [N].

@@ -50,6 +50,7 @@ module mech9_contact_equations
     real(wp), allocatable :: accelerations(:)    !< (contacts) of the gaps under the forces of contacts [rad/s^2, m/s^2]
     logical, allocatable :: holds(:)             !< (contacts) it pushes, and no other that pushes implies it
     logical, allocatable :: sticks(:)            !< (contacts) friction holds it
+    logical, allocatable :: stopped(:)           !< (contacts) friction left no slip in the impact
     real(wp), allocatable :: direction(:, :)     !< (3,contacts) in which it slides, of length 1; fixed axes
     real(wp), allocatable :: impulse(:, :)       !< (3,contacts) of an impact on the ball of a contact of links, fixed axes [N s]
   end type contact_outcome_type
@@ -134,19 +135,21 @@ contains
   end subroutine find_contact_equations
 
   !> Find the impulses of an impact. Fails where drives move a coordinate beyond its stop, or links into each other.
-  subroutine find_impact(system, contacts, equations, restitution, impulses, rates, err)
+  subroutine find_impact(system, contacts, equations, restitution, impulses, rates, stopped, err)
     class(motion_system_type), intent(inout) :: system         !< the system; its independent rates change
     type(stop_contact_type), intent(in) :: contacts(:)         !< the contacts that touch
     type(contact_equations_type), intent(in) :: equations      !< their equations, with the rates before the impact
     real(wp), intent(in) :: restitution(:)                     !< (contacts) of each
     real(wp), intent(out) :: impulses(:, :)                    !< (3,contacts) along normal and tangents [N m s, N s]
     real(wp), intent(out) :: rates(:)                          !< (contacts) of the gaps after the impact [rad/s, m/s]
+    logical, intent(out) :: stopped(:)                         !< (contacts) friction leaves no slip
     type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
     type(friction_cones_type) :: cones
     logical :: holds(size(contacts)), solved
     integer :: i, found
 
     impulses = 0.0_wp
+    stopped = .false.
     if (all(equations%rates >= -equations%round_off)) then
       rates = merge(equations%rates, 0.0_wp, equations%rates > equations%round_off)
       return
@@ -171,6 +174,7 @@ contains
       impulses = reshape(cones%force, shape(impulses))
       where (abs(impulses) <= round_off_of_impacts*maxval(abs(impulses))) impulses = 0.0_wp
       holds = cones%mode /= opens .and. contacts%is_rigid
+      stopped = cones%mode == sticks
     else
       call solve_complementarity(size(contacts), equations%g, (1.0_wp + restitution)*equations%rates, equations%round_off, &
                                  impulses(1, :), holds, solved)

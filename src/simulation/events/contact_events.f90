@@ -13,7 +13,7 @@ module mech9_contact_events
   use mech9_motion_system, only: motion_system_type
   use mech9_stop_contacts, only: stop_contact_type, stop_contacts_type, gap_motion, gap_acceleration
   use mech9_contact_motion, only: correct_rates, acceleration_of_contact
-  use mech9_event_variation, only: impact_type
+  use mech9_varied_impact, only: impact_type
   use mech9_contact_equations, only: contact_equations_type, contact_outcome_type, find_contact_equations, find_impact, find_pushing
   implicit none
   private
@@ -105,7 +105,7 @@ contains
     call find_outcome(system, contacts, touch, met, rubbing, by_contact, ends_after, outcome, err)
     if (allocated(err)) return
     changes = changes + system%state%dq
-    if (any(by_contact(1, :) > 0.0_wp)) impact = impact_of(contacts%ends, touch, by_contact(1, :), ends_after)
+    if (any(by_contact(1, :) > 0.0_wp)) impact = impact_of(contacts%ends, touch, by_contact(1, :), ends_after, outcome)
     do i = 1, size(touch)
       associate (end => contacts%ends(touch(i)))
         if (end%is_stop()) then
@@ -133,17 +133,21 @@ contains
   end subroutine meet_contacts
 
   !> The impact on ends of stops and on contacts.
-  pure type(impact_type) function impact_of(ends, touch, impulse, ends_after) result(impact)
+  pure type(impact_type) function impact_of(ends, touch, impulse, ends_after, outcome) result(impact)
     type(stop_contact_type), intent(in) :: ends(:)     !< all ends
     integer, intent(in) :: touch(:)                    !< numbers of those that touch
     real(wp), intent(in) :: impulse(:)                 !< (touch) along their normals [N m s, N s]
     real(wp), intent(in) :: ends_after(:)              !< (touch) time until endless impacts end; negative: there are none [s]
+    type(contact_outcome_type), intent(in) :: outcome  !< with the impulses of contacts
     logical :: has(size(touch))
+    integer :: i
 
     has = impulse > 0.0_wp
     impact%ends = pack(touch, has)
     impact%impulse = pack(impulse, has)
     impact%restitution = pack(merge(0.0_wp, ends(touch)%restitution, ends_after >= 0.0_wp), has)
+    impact%whole = outcome%impulse(:, pack([(i, i=1, size(touch))], has))
+    impact%sticks = pack(outcome%stopped, has)
   end function impact_of
 
   !> Fail where a ball is far behind its surface that is open: it has come round an end of a path.
@@ -379,10 +383,10 @@ contains
     !> Find the impact, and the contacts that push after it.
     subroutine meet(err)
       type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
-      logical :: at_rest(size(touch))
+      logical :: at_rest(size(touch)), stopped(size(touch))
       integer :: sliding
 
-      call find_impact(system, contacts%ends(touch), equations, restitution, impulses, rates, err)
+      call find_impact(system, contacts%ends(touch), equations, restitution, impulses, rates, stopped, err)
       if (allocated(err)) return
       at_rest = .not. abs(rates) > 0.0_wp
       ! the force of a released end passes zero: round-off must not close it again
@@ -398,6 +402,7 @@ contains
           call find_pushing(system, contacts%ends(touch), after, at_rest, sliding, outcome, err)
       end if
       if (allocated(err)) return
+      outcome%stopped = stopped
       do i = 1, size(touch)
         outcome%impulse(:, i) = matmul(equations%axes(:, :, i), impulses(:, i))
       end do

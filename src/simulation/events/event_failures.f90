@@ -17,7 +17,7 @@ module mech9_event_failures
   !> The causes: a stop is met without a rate; two impacts at once; a start on a stop that parameters move; a pair comes to rest without
   !> an acceleration; the rate of a drive jumps; quantities follow a column that may jump; a pair begins to slip whose coefficient at
   !> rest is above that of sliding; drives hit a contact that is closed; a contact begins to slide whose coefficient at rest is above that of
-  !> sliding; one comes to rest without an acceleration; one with friction is hit.
+  !> sliding; one comes to rest without an acceleration; friction just stops the slip of one that is hit.
   integer, parameter :: cause_grazing = 1, cause_several_impacts = 2, cause_start_on_stop = 3, cause_no_motion = 4, &
     cause_drive_jumps = 5, cause_followed = 6, cause_breaks_loose = 7, cause_held_hit = 8, cause_contact_loose = 9, &
     cause_contact_rest = 10, cause_rubbing_impact = 11

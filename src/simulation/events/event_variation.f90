@@ -7,44 +7,30 @@
 !> Lyapunov Exponents for Dynamic Systems with Discontinuities, Chaos Solitons Fractals 5 (1995); R. I. Leine and H. Nijmeijer, Dynamics and
 !> Bifurcations of Non-Smooth Mechanical Systems, Springer 2004; with parameters I. A. Hiskens and M. A. Pai, Trajectory Sensitivity
 !> Analysis of Hybrid Systems, IEEE Trans. Circuits Syst. I 47 (2000).
-!>
-!> The derivative of an impact follows from a(q) d = J(q)^T L, with the coefficients of motion a, the changes d of the free rates and the
-!> impulses L of the stops: a d' = -(a)' d + (J^T)' L + J^T L'. The first two terms are those of a mechanism at rest with the accelerations
-!> d under the forces L; L' is what rates after the impact need, u' = -e u. A contact of links has the rows J of its gap.
 module mech9_event_variation
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_event_failures, only: cause_grazing, cause_several_impacts, cause_start_on_stop, cause_no_motion, &
     cause_drive_jumps, cause_followed, cause_breaks_loose, cause_held_hit, cause_contact_loose, &
-    cause_contact_rest, cause_rubbing_impact
+    cause_contact_rest
   use mech9_event_tolerances, only: grazing, least_rebound
-  use mech9_cholesky, only: cholesky_factorize, cholesky_solve
   use mech9_state, only: state_type, copy_state
   use mech9_tangent, only: tangent_type
   use mech9_variable_model, only: variable_model_type
   use mech9_integration_tolerances, only: round_off_of_jumps
-  use mech9_lagrange, only: find_equations, complete_accelerations
   use mech9_frame_motion, only: place_all
   use mech9_motion_system, only: motion_system_type
-  use mech9_motion_view, only: link_motion_type
-  use mech9_contact, only: contact_place_type
   use mech9_contact_change, only: of_restitution
-  use mech9_contact_motion, only: place_of_contact, acceleration_of_contact
+  use mech9_contact_motion, only: acceleration_of_contact
   use mech9_varied_contacts, only: contact_variation_type, vary_contact, varied_numbers
   use mech9_stop_contacts, only: stop_contact_type, gap_motion, gap_acceleration
   use mech9_release_rate, only: find_use_rate
   use mech9_event_refusals, only: refuse, refuse_at, follows_jumps, hits_others
   use mech9_contact_equations, only: contact_equations_type, find_contact_equations
+  use mech9_varied_impact, only: impact_type, add_varied_impact, meet_targets
   implicit none
   private
-  public :: event_variation_type, impact_type, meet_rubbing
-
-  !> An impact, as the motion had it.
-  type :: impact_type
-    integer, allocatable :: ends(:)          !< numbers of the ends of stops, and of contacts, with an impulse
-    real(wp), allocatable :: impulse(:)      !< (ends) their impulses, which are above zero [N m s, N s]
-    real(wp), allocatable :: restitution(:)  !< (ends) that was used: 0 where endless impacts are left out
-  end type impact_type
+  public :: event_variation_type, meet_rubbing
 
   !> The derivatives at one event: at first at its time held fixed, then carried along with the time of the event.
   type :: event_variation_type
@@ -319,12 +305,6 @@ contains
         return
       end if
       do i = 1, size(ends)
-        if (ends(i)%is_stop()) cycle
-        if (.not. system%model%mechanism%contacts(ends(i)%contact)%has_friction()) cycle
-        call refuse_at(system, cause_rubbing_impact, ends(i), err)
-        return
-      end do
-      do i = 1, size(ends)
         if (ends(i)%held) cycle
         if (at_start) then
           call check_met_at_start(self, system, ends(i), err)
@@ -348,8 +328,8 @@ contains
       end do
       call copy_state(system%state, behind)
       call give_to(self, system)
-      call add_varied_impact(self, system, ends, impact, behind%dq, err)
-      if (.not. allocated(err)) call meet_targets(system, ends, equations, behind%dq, target, err)
+      call add_varied_impact(system, ends, impact, self%dq, behind%dq, err)
+      if (.not. allocated(err)) call meet_targets(system, ends, impact, equations, behind%dq, target, err)
       if (.not. allocated(err)) self%q = system%sensitivity%motion%q(:, 0:1, :)
       deallocate (system%sensitivity%motion%held)
       call copy_state(behind, system%state)
@@ -377,102 +357,6 @@ contains
       end do
     end associate
   end subroutine give_to
-
-  !> Add what the derivatives of position and parameters change of the impact, its impulses held. What the mechanism requires at rest
-  !> without accelerations is no part of it, and is taken off.
-  subroutine add_varied_impact(self, system, ends, impact, rates, err)
-    type(event_variation_type), intent(in) :: self         !< the derivatives, carried along
-    class(motion_system_type), intent(inout) :: system     !< with these derivatives; those of the rates change
-    type(stop_contact_type), intent(in) :: ends(:)         !< ends of stops with impulses
-    type(impact_type), intent(in) :: impact                !< the impulses
-    real(wp), intent(in) :: rates(:)                       !< (M) behind the impact [rad/s, m/s]
-    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
-    real(wp) :: changes(size(self%time), size(system%plan%free)), part
-    type(contact_place_type) :: place
-    type(link_motion_type) :: ball, surface
-    integer :: i, j
-
-    changes = 0.0_wp
-    associate (sensitivity => system%sensitivity, plan => system%plan)
-      allocate (sensitivity%gradient%given(plan%n_coordinates))
-      do i = 0, 1
-        part = real(i, wp)
-        system%state%dq = 0.0_wp
-        system%state%ddq = 0.0_wp
-        call place_all(plan, system%state, err)
-        if (.not. allocated(err)) &
-          call find_equations(system%model%mechanism, plan, system%dynamics, system%state, system%work, err)
-        if (allocated(err)) exit
-        system%work%accelerations = merge(0.0_wp, part*(rates(plan%independent) - self%dq(plan%independent)), &
-                                          plan%driven(plan%independent))
-        call complete_accelerations(plan, system%dynamics, system%work, system%state)
-        sensitivity%gradient%given = 0.0_wp
-        do j = 1, size(ends)
-          if (ends(j)%is_stop()) then
-            associate (force => sensitivity%gradient%given(ends(j)%coordinate))
-              force = force + part*ends(j)%direction*impact%impulse(j)
-            end associate
-          else
-            call place_of_contact(system%model%mechanism%contacts(ends(j)%contact), plan, system%state, place, ball, surface)
-            system%state%contact_force(:, ends(j)%contact) = part*impact%impulse(j)*place%normal
-          end if
-        end do
-        call sensitivity%find_accelerations(system%model, system%state, system%work, err)
-        if (allocated(err)) exit
-        changes = changes + (2.0_wp*part - 1.0_wp)*sensitivity%values(:, :, 2)
-      end do
-      deallocate (sensitivity%gradient%given)
-      if (allocated(system%contact)) system%state%contact_force = 0.0_wp
-      sensitivity%values(:, :, 1) = sensitivity%values(:, :, 1) + changes
-    end associate
-  end subroutine add_varied_impact
-
-  !> Add the derivatives of the impulses, by which rates behind the impact get theirs.
-  subroutine meet_targets(system, ends, equations, rates, target, err)
-    class(motion_system_type), intent(inout) :: system         !< with the derivatives beside that; gets those of all coordinates
-    type(stop_contact_type), intent(in) :: ends(:)             !< ends of stops with impulses
-    type(contact_equations_type), intent(in) :: equations      !< their equations
-    real(wp), intent(in) :: rates(:)                           !< (M) behind the impact [rad/s, m/s]
-    real(wp), intent(in) :: target(:, :)                       !< (P,ends) derivatives of the rates of their gaps there
-    type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
-    real(wp) :: factors(size(ends), size(ends)), impulses(size(ends))
-    real(wp) :: left(size(target, 1), size(ends))
-    type(contact_variation_type) :: variation
-    integer :: i, j, p, failed_at
-
-    system%state%dq = rates
-    system%state%ddq = 0.0_wp
-    system%sensitivity%values(:, :, 2) = 0.0_wp
-    call place_all(system%plan, system%state, err)
-    if (.not. allocated(err)) call system%show_sensitivity(err)
-    if (allocated(err)) return
-    factors = equations%g
-    call cholesky_factorize(size(ends), factors, failed_at)
-    if (failed_at > 0) then
-      call refuse_at(system, cause_several_impacts, ends(failed_at), err)
-      return
-    end if
-    left = target
-    do i = 1, size(ends)
-      if (ends(i)%is_stop()) then
-        left(:, i) = left(:, i) - ends(i)%direction*system%sensitivity%motion%q(:, 1, ends(i)%coordinate)
-      else
-        call vary_contact(system%model, system%sensitivity%motion, ends(i)%contact, variation)
-        left(:, i) = left(:, i) - variation%gaps(:, 1)
-      end if
-    end do
-    associate (values => system%sensitivity%values, plan => system%plan)
-      do p = 1, size(target, 1)
-        impulses = left(p, :)
-        call cholesky_solve(size(ends), factors, impulses)
-        do i = 1, size(plan%free)
-          j = findloc(equations%free, plan%free_places(i), dim=1)
-          values(p, i, 1) = values(p, i, 1) + dot_product(equations%answers(j, 1, :), impulses)
-        end do
-      end do
-    end associate
-    call system%show_sensitivity(err)
-  end subroutine meet_targets
 
   !> Put the derivatives behind the event into the vector of a system whose held coordinates stay.
   subroutine put_behind(self, system, t, y, err)

@@ -117,7 +117,8 @@ contains
     end associate
   end subroutine vary_contact
 
-  !> The changes of the slip and of its derivative in time by one parameter, as seen from the surface, which may turn in its link.
+  !> The changes of the slip and of its derivative in time by one parameter, as seen from the surface, which may turn in its link. The rate
+  !> of the gap along the normal, which turns, is no part of the slip. Along the normal itself the changes have no meaning.
   pure subroutine vary_slip(contact, shape, relative, turns, numbers, moved, slips)
     type(contact_type), intent(in) :: contact                !< the contact
     type(gap_shape_type), intent(in) :: shape                !< its gap near the place
@@ -126,7 +127,7 @@ contains
     real(wp), intent(in) :: numbers(:)                       !< (numbers) derivatives of the contact's numbers by one parameter, SI units; of size 0: all are zero
     real(wp), intent(in) :: moved(3, 0:2)                    !< (3,0:2) change of the centre, and derivatives in time, axes of the surface's link [m, per s]
     real(wp), intent(out) :: slips(3, 0:1)                   !< the changes, in the axes of the surface's link [m/s]
-    real(wp) :: turned(3, 0:2), spins(3, 0:1), twist(6), normals(3, 0:1), rate(3)
+    real(wp) :: turned(3, 0:2), spins(3, 0:1), twist(6), normals(3, 0:1), rate(3), gap_rate
 
     turned = relative%seen(turns)
     twist = surface_change(contact, numbers)
@@ -137,9 +138,13 @@ contains
       rate = matmul(h, x(:, 1))
       normals(:, 0) = matmul(h, moved(:, 0))
       normals(:, 1) = matmul(h, moved(:, 1)) + shape%bent_along(x(:, 1), moved(:, 0))
-      slips(:, 0) = moved(:, 1) - contact%radius*(cross(spins(:, 0), shape%normal) + cross(spin(:, 0), normals(:, 0)))
+      gap_rate = dot_product(shape%normal, x(:, 1))
+      slips(:, 0) = moved(:, 1) - contact%radius*(cross(spins(:, 0), shape%normal) + cross(spin(:, 0), normals(:, 0))) &
+                    - gap_rate*normals(:, 0)
       slips(:, 1) = moved(:, 2) - contact%radius*(cross(spins(:, 1), shape%normal) + cross(spin(:, 1), normals(:, 0)) &
-                                                  + cross(spins(:, 0), rate) + cross(spin(:, 0), normals(:, 1)))
+                                                  + cross(spins(:, 0), rate) + cross(spin(:, 0), normals(:, 1))) &
+                    - (dot_product(shape%normal, x(:, 2)) + dot_product(x(:, 1), rate))*normals(:, 0) - gap_rate*normals(:, 1) &
+                    - (dot_product(shape%normal, moved(:, 1)) + dot_product(x(:, 1), normals(:, 0)))*rate
       if (size(numbers) == 0) return
       slips(:, 0) = slips(:, 0) - numbers(4)*cross(spin(:, 0), shape%normal)
       slips(:, 1) = slips(:, 1) - numbers(4)*(cross(spin(:, 1), shape%normal) + cross(spin(:, 0), rate))
