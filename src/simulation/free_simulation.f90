@@ -26,7 +26,7 @@ module mech9_free_simulation
   use mech9_variable_model, only: variable_model_type
   use mech9_sensitivity, only: sensitivity_type, new_given_sensitivity
   use mech9_varied_motion, only: varied_motion_type
-  use mech9_simulation, only: simulation_type, simulation_statistics_type, standing_type, refuse_contacts
+  use mech9_simulation, only: simulation_type, simulation_statistics_type, standing_type
   use mech9_coordinate_changes, only: add_change, same_replaced, same_independent
   implicit none
   private
@@ -480,8 +480,7 @@ contains
     type(sensitivity_type), intent(out) :: sensitivity                 !< room for the results
     type(error_type), allocatable, intent(out) :: err                  !< allocated if it failed
 
-    call refuse_contacts(self%model, err)
-    if (.not. allocated(err)) call self%motion%begin_sensitivity(variable, err)
+    call self%motion%begin_sensitivity(variable, err)
     if (allocated(err)) return
     call new_given_sensitivity(self%model, highest, sensitivity)
   end subroutine begin_sensitivity

@@ -394,8 +394,7 @@ contains
     call meet_contacts(self%system, met, rubbing, of_held, self%contacts, impulses, changes, impact, holds_change, events, err)
     if (allocated(err)) return
     holds_change = holds_change .or. released
-    if (allocated(self%passage) .and. allocated(impact%ends)) &
-      call self%passage%pass_impact(self%system, contacts_before%ends, impact, at_start, err)
+    if (allocated(self%passage)) call self%passage%pass_contacts(self%system, contacts_before%ends, impact, at_start, err)
     if (allocated(err)) return
     hits = any(abs(impulses) > 0.0_wp)
     if (allocated(self%system%contact)) hits = hits .or. any(abs(self%system%state%contact_force) > 0.0_wp)

@@ -4,7 +4,7 @@ module mech9_simulation
   use mech9_stop_request, only: stop_request_type
   use mech9_error, only: error_type, raise, add_place, exit_usage, exit_data, exit_integrator, exit_interrupted
   use mech9_simulation_failures, only: failure_not_started, failure_backwards, failure_interrupted, failure_accuracy, &
-    failure_friction_sensitivity, failure_contact_sensitivity
+    failure_friction_sensitivity
   use mech9_failure_units, only: tell_in_units
   use mech9_model, only: model_type
   use mech9_plan, only: plan_type
@@ -20,7 +20,7 @@ module mech9_simulation
   implicit none
   private
   public :: simulation_type, interruption_type, simulation_statistics_type, coordinate_change_type
-  public :: estimated_errors_type, judge_error, standing_type, refuse_frictions, refuse_contacts
+  public :: estimated_errors_type, judge_error, standing_type, refuse_frictions
 
   !> Answers whether a motion shall stop. It is asked before each time, before each step of an integrator, and after many steps of a
   !> driven motion.
@@ -472,25 +472,6 @@ contains
     err%failure%number = 1
     call add_place(err, place=model%mechanism%frictions(1)%place)
   end subroutine refuse_frictions
-
-  !> Fail where compliant contacts have friction, or rigid ones stand beside frictions of pairs, with which derivatives by parameters are not known.
-  subroutine refuse_contacts(model, err)
-    type(model_type), intent(in) :: model               !< the model
-    type(error_type), allocatable, intent(out) :: err   !< allocated where there are such contacts
-    integer :: i
-
-    if (.not. model%mechanism%has_contacts()) return
-    do i = 1, size(model%mechanism%contacts)
-      associate (contact => model%mechanism%contacts(i))
-        if (merge(.not. model%mechanism%has_frictions(), .not. contact%has_friction(), contact%is_rigid)) cycle
-        call raise(err, exit_data, failure_contact_sensitivity)
-        err%failure%number = contact%number
-        err%failure%limit = merge(2, 1, contact%is_rigid)
-        call add_place(err, place=contact%place)
-        return
-      end associate
-    end do
-  end subroutine refuse_contacts
 
   !> Let the present motion wait for its derivatives by all parameters, which are found for several positions at once.
   subroutine show_sensitivity(self, sensitivity, err)

@@ -6,7 +6,7 @@ module mech9_contact_words
   use mech9_integration_failures, only: failure_contact_paradox, failure_cornered_contact, failure_shared_contact
   use mech9_event_failures, only: failure_contact_start, failure_contact_violated, failure_undecided_contact, &
     failure_contact_behind
-  use mech9_simulation_failures, only: failure_contact_passed, failure_contact_sensitivity
+  use mech9_simulation_failures, only: failure_contact_passed
   implicit none
   private
   public :: explain_contact_failure
@@ -44,15 +44,6 @@ contains
       text = 'the links of contact '//to_text(failure%number)//' move into each other at t = '//to_text(failure%t, 10)// &
              ' s: at t = '//to_text(failure%t_stop, 10)//' s they would be '// &
              trim(length_in_words(failure, -failure%values(1, 1), 4))//' within each other. Change the drives, or move the surface'
-    case (failure_contact_sensitivity)
-      if (failure%limit == 1) then
-        text = 'derivatives by the parameters are not computed with friction in compliant contacts, as in contact '// &
-               to_text(failure%number)//'. Leave out friction= there, the parameters, or sensitivities and gradients'
-      else
-        text = 'derivatives by the parameters are not computed with frictions of pairs beside rigid contacts, as contact '// &
-               to_text(failure%number)//'. Make the contact compliant by stiffness=, leave out the frictions, the '// &
-               'parameters, or sensitivities and gradients'
-      end if
     case (failure_shared_contact)
       text = 'derivatives by the parameters are not computed at t = '//to_text(failure%t, 10)//' s, where equilibrium does not '// &
              'determine the forces of closed contacts, among them contact '//to_text(failure%number)//'. Leave out reactions '// &

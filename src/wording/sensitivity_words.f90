@@ -8,7 +8,7 @@ module mech9_sensitivity_words
   use mech9_integration_failures, only: failure_jump_sensitivity
   use mech9_event_failures, only: failure_event_sensitivity, cause_grazing, cause_several_impacts, cause_start_on_stop, &
     cause_drive_jumps, cause_followed, cause_breaks_loose, cause_held_hit, cause_contact_loose, &
-    cause_contact_rest, cause_rubbing_impact
+    cause_contact_rest, cause_rubbing_impact, cause_slip_at_rest
   use mech9_simulation_failures, only: failure_angles_sensitivity, failure_friction_sensitivity
   use mech9_reaction_failures, only: failure_shared_force
   use mech9_block_names, only: chain_names
@@ -85,6 +85,8 @@ contains
       text = place//' comes to rest without an acceleration'
     case (cause_rubbing_impact)
       text = place//' is hit, and its friction just stops the slip'
+    case (cause_slip_at_rest)
+      text = place//' begins to act without a slip, and parameters change its slip'
     case (cause_drive_jumps)
       text = 'the rate of a drive jumps while a stop or friction holds a coordinate'
     case (cause_followed)

@@ -482,9 +482,6 @@ def free_cases():
                                 start=initial(1, 0.0, ', velocity=1')), ('--set', 'gravity.acceleration=0,0,0'), INTEGRATOR,
          ['the motion makes no progress beyond t = 1000000 s: it has had ', ' events at stops, frictions and contacts. Give a smaller '
           "restitution, a compliant stop or contact by stiffness=, or friction by law='smooth'"]),
-        ('contact_sensitivity', SLIDING_POINT.replace("&contact point='P' /", "&contact point='P', friction=0.2, stiffness=1e4 /")
-         + "&parameter name='m', sets='body(1).mass' /\n&output sensitivities=.true. /\n", (), DATA,
-         ['derivatives by the parameters are not computed with friction in compliant contacts, as in contact 1. Leave out friction= there']),
         ('cornered_contact', SLIDING_POINT.replace(
             "&contact point='P' /", "&contact point='P', kind='path', file='path.dat', side='left', axis=0,1,0, zero=0,0,1, radius=0.1 /")
          + "&gravity acceleration=0,0,-9.81 /\n&parameter name='m', sets='body(1).mass' /\n&output sensitivities=.true. /\n",

@@ -54,6 +54,37 @@ BILLIARD = """&structure cq=1,2,3,4,5,6 /
 &parameter name='mu', sets='contact(1).friction' /
 &parameter name='g', sets='gravity(1).acceleration(3)' /
 """
+#: A foot on an elastic leg, which slides and sticks on the ground; its sole is round.
+FOOT = """&structure cq=1,2,3 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&pair coordinate=2, links=2,3, kind='prismatic', axis=0,0,1 /
+&pair coordinate=3, links=3,4, kind='revolute', axis=0,1,0 /
+&body link=4, mass=2, centre=0.05,0,0.1, inertia=0.02,0.03,0.02,0,0,0 /
+&gravity acceleration=0,0,-9.81 /
+&load kind='coordinate', coordinate=3, stiffness=30, damping=0.3 /
+&load kind='coordinate', coordinate=1, stiffness=40 /
+&point name='F', link=4, position=0,0,-0.25 /
+&contact point='F', radius=0.05, friction=0.25 /
+&initial coordinate=1, position=0.1, velocity=1.5 /
+&initial coordinate=2, position=0.3 /
+&initial coordinate=3, position=0 /
+&parameter name='m', sets='body(1).mass' /
+&parameter name='c', sets='body(1).centre(1)' /
+&parameter name='k', sets='load(2).stiffness' /
+&parameter name='mu', sets='contact(1).friction' /
+&parameter name='v', sets='initial(1).velocity' /
+"""
+#: A mass point that slides into a plane at the bound of its friction, if e = 0.
+SLIDER = """&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&pair coordinate=2, links=2,3, kind='prismatic', axis=0,0,1 /
+&body link=3, mass=2 /
+&point name='C', link=3, position=0,0,0 /
+&contact point='C', radius=0, friction=0.5 /
+&initial coordinate=1, position=0, velocity=0.5 /
+&initial coordinate=2, position=1, velocity=-1 /
+&parameter name='v', sets='initial(1).velocity' /
+"""
 
 
 def against_complex(checks, program, folder, text, motion, at, end, tol, columns=('q1', 'dq1', 'q2', 'dq2')):

@@ -165,9 +165,7 @@ def test_motors(checks, mech9d, tmp_path):
     (3, SLIDER, '', 2, 'there are 2 exponents'),
     (1, SLIDER.replace('&initial coordinate=1, position=0.3, velocity=0.4 /', "&drive coordinate=1, kind='polynomial', coefficients=0,1 /"),
      '', 3, 'every independent coordinate is driven, so that no exponent exists'),
-    (1, SLIDER, 'transient=20', 3, 'the transient of the exponents ends after the motion'),
-    (1, SLIDER + "&point name='P', link=2 /\n&contact point='P', normal=1,0,0, friction=0.1, stiffness=1e4 /\n", '', 3,
-     'exponents are not known with friction in compliant contacts')])
+    (1, SLIDER, 'transient=20', 3, 'the transient of the exponents ends after the motion')])
 def test_refusals(checks, mech9d, tmp_path, count, text, settings, code, message):
     """Refusals of what exponents do not carry, with a remedy."""
     _, _, said = go(mech9d, tmp_path, text, count, 10.0, settings, code)

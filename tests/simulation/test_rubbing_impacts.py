@@ -5,7 +5,7 @@ import cmath
 
 import pytest
 
-from contact_derivative_cases import BILLIARD, ROCKER, SKEW, against_complex, first_root
+from contact_derivative_cases import BILLIARD, ROCKER, SKEW, SLIDER, against_complex, first_root
 from event_derivative_cases import COLUMNS, against_differences, go, kinds
 
 #: A ball that is thrown, spins about two axes and bounces on a plane.
@@ -58,19 +58,6 @@ def test_a_ball_that_comes_to_rest(checks, mech9d, tmp_path):
     # tolerance: the impacts that are left out, which would lift the ball by 1e-12 m
     report = against_complex(checks, mech9d, tmp_path, text, thrown, at, 0.7, 2e-6, ('q1', 'dq1', 'q2', 'dq2', 'q3', 'dq3'))
     checks.true(('close', 1) in kinds(report), 'it comes to rest', kinds(report))
-
-
-#: A mass point that slides into a plane at the bound of its friction, if e = 0.
-SLIDER = """&structure cq=1,2 /
-&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
-&pair coordinate=2, links=2,3, kind='prismatic', axis=0,0,1 /
-&body link=3, mass=2 /
-&point name='C', link=3, position=0,0,0 /
-&contact point='C', radius=0, friction=0.5 /
-&initial coordinate=1, position=0, velocity=0.5 /
-&initial coordinate=2, position=1, velocity=-1 /
-&parameter name='v', sets='initial(1).velocity' /
-"""
 
 
 @pytest.mark.parametrize('v, code, slope', [(0.5, 6, None), (0.5 - 1e-6, 0, 0.0), (0.5 + 1e-6, 0, 1.0)])

@@ -95,9 +95,7 @@ def test_runs_that_have_none(checks, mech9d, tmp_path):
     ({'exponents=2': 'exponents=3'}, 2, 'there are 2 exponents'),
     ({"name='d'": "name='L2'"}, 3, "gives the study a column 'L2'"),
     ({'transient=20': 'transient=70'}, 3, 'the transient of the exponents ends after the motion'),
-    ({'&body': '&contact point=\'P\', link=1, kind=\'plane\', normal=1,0,0, friction=0.1, stiffness=1e4 /\n&point name=\'P\', link=2 /\n&body'}, 3,
-     'exponents are not known with friction in compliant contacts'),
-), ids=('many', 'name', 'transient', 'contact'))
+), ids=('many', 'name', 'transient'))
 def test_refusals(checks, mech9d, tmp_path, changes, code, words):
     """Refusals before the first run."""
     text = SLIDER

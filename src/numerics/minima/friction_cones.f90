@@ -417,6 +417,8 @@ contains
     real(wp), dimension(size(x), size(x)) :: scaled, u, v
     real(wp) :: s(size(x))
 
+    depends = .false.
+    if (size(x) == 0) return
     scaled = a*spread(scale, 1, size(x))
     call decompose(scaled, u, s, v)
     x = matmul(right, u)

@@ -7,7 +7,7 @@ module mech9_directed_motion
   use mech9_request, only: output_settings_type
   use mech9_event_failures, only: failure_event_sensitivity
   use mech9_integration_failures, only: failure_cornered_contact, failure_shared_contact
-  use mech9_simulation_failures, only: failure_angles_sensitivity, failure_contact_sensitivity
+  use mech9_simulation_failures, only: failure_angles_sensitivity
   use mech9_free_simulation, only: free_simulation_type
   use mech9_sensitivity_words, only: find_cause_at_event
   implicit none
@@ -88,10 +88,6 @@ contains
     else if (err%failure%kind == failure_angles_sensitivity) then
       call raise(err, exit_singular, time//'a ball joint comes near gimbal lock, and '//unknown//' are not known in other '// &
                  'angles; turn the axes of the joint by axis= and zero=')
-    else if (err%failure%kind == failure_contact_sensitivity) then
-      place = err%place
-      call raise(err, exit_data, unknown//' are not known with friction in compliant contacts, and with frictions of pairs '// &
-                 'beside rigid contacts; leave the friction out, or make contacts without friction compliant by stiffness=', place)
     else if (err%failure%kind == failure_cornered_contact) then
       place = err%place
       call raise(err, exit_data, time//'a contact stays closed on a path with corners, or at its end, where '//unknown// &

@@ -18,7 +18,7 @@ module mech9_exponents
   use mech9_partition, only: free_coordinate
   use mech9_variable_model, only: variable_model_type
   use mech9_directed_motion, only: set_directions, explain_refusal
-  use mech9_simulation, only: interruption_type, refuse_contacts
+  use mech9_simulation, only: interruption_type
   use mech9_sensitivity, only: sensitivity_type
   use mech9_motion_sensitivity, only: motion_sensitivity_type
   use mech9_free_simulation, only: free_simulation_type
@@ -136,9 +136,6 @@ contains
              .not. model%request%exponents%time > 0.0_wp) then
       call raise(err, exit_data, 'the transient of the exponents ends after the motion; give a later end= in &time, or time= '// &
                  'in &exponents', model%request%exponents%place)
-    else
-      call refuse_contacts(model, err)
-      call explain_refusal(err, 'exponents', 'exponents')
     end if
   end subroutine refuse_exponents
 

@@ -13,7 +13,7 @@ module mech9_periodic
   use mech9_model, only: model_type
   use mech9_directed_motion, only: explain_refusal
   use mech9_state, only: state_type, copy_state
-  use mech9_simulation, only: interruption_type, refuse_contacts
+  use mech9_simulation, only: interruption_type
   use mech9_law_periods, only: law_period_type, find_law_period, fit_period
   use mech9_period_map, only: period_map_type
   use mech9_periodic_motion, only: periodic_motion_type, find_multipliers, judge_stability, same_motion, unstable, &
@@ -84,9 +84,6 @@ contains
     else if (model%request%output%with_derivatives()) then
       call raise(err, exit_data, 'derivatives by parameters are not known for periodic motions; leave out sensitivities= and '// &
                  'gradients=', model%request%output%sensitivities_place)
-    else
-      call refuse_contacts(model, err)
-      call explain_refusal(err, 'the derivatives by which periodic motions are found', 'periodic motions')
     end if
   end subroutine refuse
 

@@ -12,12 +12,21 @@ module mech9_contact_events
     event_stick, event_slip
   use mech9_motion_system, only: motion_system_type
   use mech9_stop_contacts, only: stop_contact_type, stop_contacts_type, gap_motion, gap_acceleration
-  use mech9_contact_motion, only: correct_rates, acceleration_of_contact
+  use mech9_motion_view, only: link_motion_type
+  use mech9_contact, only: contact_place_type
+  use mech9_contact_motion, only: correct_rates, place_of_contact, acceleration_of_contact
   use mech9_varied_impact, only: impact_type
   use mech9_contact_equations, only: contact_equations_type, contact_outcome_type, find_contact_equations, find_impact, find_pushing
   implicit none
   private
   public :: begin_contacts, meet_contacts, find_pressed, refuse_jump
+
+  !> A contact comes to rest where that takes this part of the rates at most: far more than errors of integration ...
+  real(wp), parameter :: lost_at_rest = 1.0e-3_wp
+  !> ... or as much as the accelerations take within so many times the time by which the event may be early.
+  real(wp), parameter :: longest_lead = 1.0e2_wp
+  !> A contact has turned back where this part of its direction at least is against the earlier one.
+  real(wp), parameter :: turned_back = 0.5_wp
 
 contains
 
@@ -99,7 +108,7 @@ contains
     comes_to_rest = .false.
     if (rubbing > 0) comes_to_rest = .not. system%contact%sticks(rubbing)
     if (present(again)) comes_to_rest = comes_to_rest .and. .not. again
-    if (comes_to_rest) call bring_to_rest(system, rubbing, err)
+    if (comes_to_rest) call bring_to_rest(system, rubbing, comes_to_rest, err)
     if (allocated(err)) return
     if (comes_to_rest) rubbing = 0
     call find_outcome(system, contacts, touch, met, rubbing, by_contact, ends_after, outcome, err)
@@ -167,15 +176,32 @@ contains
     err%place = system%model%mechanism%contacts(end%contact)%place
   end subroutine refuse_jump
 
-  !> Take from a contact of links that comes to rest the slip that errors of integration have left.
-  subroutine bring_to_rest(system, number, err)
+  !> Take from a contact of links that comes to rest the slip that errors of integration have left. Where the slip vanishes because no
+  !> coordinate moves the contact along itself, as at a dead point, the rates stay: the contact slides on, the other way.
+  subroutine bring_to_rest(system, number, rests, err)
     class(motion_system_type), intent(inout) :: system     !< the system; its independent rates change
     integer, intent(in) :: number                          !< of the contact
+    logical, intent(out) :: rests                          !< the contact can come to rest
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    type(contact_place_type) :: place
+    type(link_motion_type) :: ball, surface
+    real(wp) :: before(size(system%plan%independent)), slip, deceleration, change, by_time
 
-    system%contact%sticks(number) = .true.
-    call rest_exactly(system, err)
-    system%contact%sticks(number) = .false.
+    associate (contact => system%model%mechanism%contacts(number), plan => system%plan, state => system%state, &
+               units => system%plan%unit_of(system%plan%independent))
+      before = state%dq(plan%independent)
+      call place_of_contact(contact, plan, state, place, ball, surface)
+      slip = norm2(place%slip - place%gap_rate()*place%normal)
+      deceleration = norm2(acceleration_of_contact(contact, plan, state))
+      by_time = slip*maxval(abs(state%ddq(plan%independent)/units))
+      system%contact%sticks(number) = .true.
+      call rest_exactly(system, err)
+      system%contact%sticks(number) = .false.
+      if (allocated(err)) return
+      change = maxval(abs(state%dq(plan%independent) - before)/units)
+      rests = change <= lost_at_rest*maxval(abs(before)/units) .or. change*deceleration <= longest_lead*by_time
+      if (.not. rests) state%dq(plan%independent) = before
+    end associate
   end subroutine bring_to_rest
 
   !> Correct the independent rates by round-off, so that closed contacts of links have no rates.
@@ -195,7 +221,9 @@ contains
     type(motion_events_type), intent(inout) :: events          !< gets the event
 
     associate (k => end%contact, contact => system%contact)
-      if (end%closed .and. (sticks .neqv. contact%sticks(k))) &
+      if (end%closed .and. ((sticks .neqv. contact%sticks(k)) .or. &
+                            (.not. sticks .and. contact%forces(1, k) > 0.0_wp .and. &
+                                                                 dot_product(direction, contact%direction(:, k)) < -turned_back))) &
         call events%add(motion_event_type(system%state%t, merge(event_stick, event_slip, sticks), 'contact', end%number()))
       contact%sticks(k) = sticks .and. end%closed
       contact%direction(:, k) = direction

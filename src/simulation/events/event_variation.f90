@@ -12,7 +12,7 @@ module mech9_event_variation
   use mech9_error, only: error_type
   use mech9_event_failures, only: cause_grazing, cause_several_impacts, cause_start_on_stop, cause_no_motion, &
     cause_drive_jumps, cause_followed, cause_breaks_loose, cause_held_hit, cause_contact_loose, &
-    cause_contact_rest
+    cause_contact_rest, cause_slip_at_rest
   use mech9_event_tolerances, only: grazing, least_rebound
   use mech9_state, only: state_type, copy_state
   use mech9_tangent, only: tangent_type
@@ -20,8 +20,10 @@ module mech9_event_variation
   use mech9_integration_tolerances, only: round_off_of_jumps
   use mech9_frame_motion, only: place_all
   use mech9_motion_system, only: motion_system_type
+  use mech9_motion_view, only: link_motion_type
+  use mech9_contact, only: contact_place_type
   use mech9_contact_change, only: of_restitution
-  use mech9_contact_motion, only: acceleration_of_contact
+  use mech9_contact_motion, only: place_of_contact, acceleration_of_contact
   use mech9_varied_contacts, only: contact_variation_type, vary_contact, varied_numbers
   use mech9_stop_contacts, only: stop_contact_type, gap_motion, gap_acceleration
   use mech9_release_rate, only: find_use_rate
@@ -42,13 +44,16 @@ module mech9_event_variation
     real(wp), allocatable :: motor_rates(:)   !< (motors) rates of the states of motors before it
     real(wp), allocatable :: gaps(:, :, :)    !< (P,0:2,contacts) derivatives of gaps, of their rates, and of slips in the direction in which
                                               !< contacts slide, at a fixed time before it [m, m/s]
+    real(wp), allocatable :: slips(:, :, :)   !< (P,3,contacts) derivatives of slips at a fixed time before it, fixed axes [m/s]
+    logical, allocatable :: rests(:)          !< (contacts) there is no slip before it
+    logical, allocatable :: acted(:)          !< (contacts) there is a force before it
     real(wp), allocatable :: gap_motion(:, :) !< (0:2,contacts) the gaps, their rates and accelerations before it [m]
   contains
     procedure :: begin
     procedure :: set_time
     procedure :: meet_stop
     procedure :: meet_friction
-    procedure :: pass_impact
+    procedure :: pass_contacts
     procedure :: put_behind
     procedure :: hand_on
     procedure :: check_start
@@ -160,10 +165,13 @@ contains
     class(motion_system_type), intent(in) :: system        !< the system before the event, with its motion
     type(stop_contact_type) :: end
     type(contact_variation_type) :: variation
+    type(contact_place_type) :: place
+    type(link_motion_type) :: ball, surface
     integer :: i
 
     associate (n => size(system%model%mechanism%contacts), mechanism => system%model%mechanism)
-      allocate (self%gaps(size(self%time), 0:2, n), self%gap_motion(0:2, n))
+      allocate (self%gaps(size(self%time), 0:2, n), self%slips(size(self%time), 3, n), self%rests(n), self%gap_motion(0:2, n))
+      self%acted = system%contact%acts
       do i = 1, n
         end = stop_contact_type(contact=i, is_rigid=mechanism%contacts(i)%is_rigid)
         self%gap_motion(0:1, i) = gap_motion(mechanism, system%plan, system%state, end)
@@ -171,6 +179,9 @@ contains
         call vary_contact(system%model, system%sensitivity%motion, i, variation)
         self%gaps(:, 0:1, i) = variation%gaps(:, 0:1)
         self%gaps(:, 2, i) = matmul(variation%slips(:, :, 0), system%contact%direction(:, i))
+        self%slips(:, :, i) = variation%slips(:, :, 0)
+        call place_of_contact(mechanism%contacts(i), system%plan, system%state, place, ball, surface)
+        self%rests(i) = norm2(place%slip - place%gap_rate()*place%normal) <= round_off_of_jumps*place%speed
       end do
     end associate
   end subroutine keep_gaps
@@ -280,6 +291,19 @@ contains
       call refuse(system, cause_breaks_loose, number, err)
     end if
   end subroutine break_loose
+
+  !> Pass an impact, if there is one, and what contacts do from now on. Fails where derivatives do not exist.
+  subroutine pass_contacts(self, system, contacts, impact, at_start, err)
+    class(event_variation_type), intent(inout) :: self     !< the derivatives, at a fixed time; then carried along, behind an impact
+    class(motion_system_type), intent(inout) :: system     !< the system, with all rates behind the event; stays as it is
+    type(stop_contact_type), intent(in) :: contacts(:)     !< all ends, as before the event
+    type(impact_type), intent(in) :: impact                !< the impact; not allocated parts: there is none
+    logical, intent(in) :: at_start                        !< the motion begins with it
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+
+    if (allocated(impact%ends)) call pass_impact(self, system, contacts, impact, at_start, err)
+    if (.not. allocated(err)) call check_rest(self, system, contacts, impact, at_start, err)
+  end subroutine pass_contacts
 
   !> Pass an impact on rigid stops and contacts. No stop and no friction holds a coordinate in the plan of the system. Fails where derivatives do not
   !> exist.
@@ -460,6 +484,36 @@ contains
       end do
     end associate
   end subroutine check_met_at_start
+
+  !> Fail where a contact with friction begins to act without a slip, and parameters change the slip: its friction would turn round, or stop
+  !> the change at once. In an impact this happens by an impulse.
+  subroutine check_rest(self, system, ends, impact, at_start, err)
+    class(event_variation_type), intent(in) :: self        !< the derivatives at the event
+    class(motion_system_type), intent(in) :: system        !< the system, with the contacts that act from now on
+    type(stop_contact_type), intent(in) :: ends(:)         !< all ends
+    type(impact_type), intent(in) :: impact                !< the impact; not allocated parts: there is none
+    logical, intent(in) :: at_start                        !< the motion begins with the event
+    type(error_type), allocatable, intent(out) :: err      !< allocated where derivatives do not exist
+    real(wp) :: duration
+    integer :: i, p
+
+    if (.not. allocated(self%rests)) return
+    associate (contacts => system%model%mechanism%contacts, time => system%model%request%time)
+      duration = abs(time%end - time%start)
+      do i = 1, size(contacts)
+        if (.not. (contacts(i)%has_friction() .and. system%contact%acts(i) .and. self%rests(i))) cycle
+        if (self%acted(i) .and. .not. at_start) cycle
+        if (allocated(impact%ends)) then
+          if (any(ends(impact%ends)%contact == i)) cycle
+        end if
+        do p = 1, size(self%time)
+          if (duration*norm2(self%slips(p, :, i)) <= round_off_of_jumps*system%sensitivity%size_of(p)*system%plan%length) cycle
+          call refuse_at(system, cause_slip_at_rest, ends(findloc(ends%contact, i, dim=1)), err)
+          return
+        end do
+      end do
+    end associate
+  end subroutine check_rest
 
   !> Fail where a pair begins to slip from rest at the start, and a parameter changes its rate: its friction would turn round.
   subroutine check_start_of_slip(self, system, err)

@@ -1,12 +1,12 @@
-!> The derivatives of gaps and slips of contacts by parameters, and of the forces of rigid contacts that are closed, in a motion whose
-!> variational equations are integrated.
+!> The derivatives of gaps and slips of contacts by parameters, and of the forces of rigid contacts that are closed and of friction, in a
+!> motion whose variational equations are integrated.
 !>
 !> Seen from the link of the surface, the centre of the ball is at x, and its change by a parameter is the difference of the twists by which
 !> both links move, at the centre. The second derivative of the gap g, n . x'' + x' . H x', changes by n . dx'' + 2 x' . H dx' +
 !> x'' . H dx + (x' . dH x'). The slip is x' - r w x n, with the angular velocity w of the ball against the surface. A closed contact leaves
 !> the second derivative of the gap no change, one that sticks the acceleration of the slip, too: with the rows J of these conditions and the
 !> columns K of the unknown forces, whose derivatives are f', J M^-1 K^T f' = -(change under forces that are held). The friction of a contact
-!> that slides follows its normal force, and turns with the slip.
+!> that slides follows its normal force, and turns with the slip. The normal force of a compliant contact follows from the motion.
 module mech9_varied_contacts
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data
@@ -14,8 +14,10 @@ module mech9_varied_contacts
   use mech9_integration_tolerances, only: slip_of_errors
   use mech9_rotation, only: cross, turn, turn_back
   use mech9_friction_cones, only: solve_least
-  use mech9_contact, only: contact_type
-  use mech9_contact_change, only: gap_shape_type, find_gap_shape, surface_change, of_sliding
+  use mech9_motion_view, only: link_motion_type
+  use mech9_contact, only: contact_type, contact_place_type
+  use mech9_contact_change, only: gap_shape_type, contact_change_type, find_gap_shape, surface_change, vary_normal_force, &
+    of_sliding
   use mech9_contact_load, only: contact_load_type
   use mech9_mechanism, only: mechanism_type
   use mech9_model, only: model_type
@@ -27,7 +29,7 @@ module mech9_varied_contacts
   use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type
   use mech9_varied_motion, only: varied_motion_type, link_twists
   use mech9_motion_sensitivity, only: motion_sensitivity_type
-  use mech9_contact_motion, only: contact_motion_type, contact_rows_type, choose_contacts, find_contact_rows
+  use mech9_contact_motion, only: contact_motion_type, contact_rows_type, choose_contacts, find_contact_rows, place_of_contact
   implicit none
   private
   public :: contact_variation_type, vary_contact, varied_numbers, find_varied_contacts
@@ -38,6 +40,7 @@ module mech9_varied_contacts
     real(wp), allocatable :: slips(:, :, :)   !< (P,3,0:1) of the slip and its derivative in time as seen from the surface, fixed axes [m/s]
     real(wp), allocatable :: turns(:, :)      !< (P,3) rotation of the surface, fixed axes [rad]
     real(wp), allocatable :: sliding(:)       !< (P) of the coefficient of sliding friction
+    real(wp), allocatable :: normal_force(:)  !< (P) of the normal force of a compliant contact [N]
   end type contact_variation_type
 
   !> The motion of a ball's centre as seen from the link of the surface, and what its changes need; of links and centre along fixed axes.
@@ -83,14 +86,18 @@ contains
     type(contact_variation_type), intent(out) :: variation       !< the derivatives
     type(relative_motion_type) :: relative
     type(gap_shape_type) :: shape
+    type(contact_place_type) :: place
+    type(link_motion_type) :: seen_ball, seen_surface
     real(wp), dimension(motion%n_parameters, 6, 0:2) :: ball, surface
     real(wp), allocatable :: numbers(:)
     real(wp) :: moved(3, 0:2), twist(6), slips(3, 0:1)
     integer :: p
 
     associate (contact => model%mechanism%contacts(number), n => motion%n_parameters)
-      allocate (variation%gaps(n, 0:2), variation%slips(n, 3, 0:1), variation%turns(n, 3), variation%sliding(n), source=0.0_wp)
+      allocate (variation%gaps(n, 0:2), variation%slips(n, 3, 0:1), variation%turns(n, 3), variation%sliding(n), &
+                variation%normal_force(n), source=0.0_wp)
       call find_relative(contact, motion%plan, motion%state, relative)
+      call place_of_contact(contact, motion%plan, motion%state, place, seen_ball, seen_surface)
       shape = find_gap_shape(contact, relative%x(:, 0))
       call link_twists(motion, contact%links(1), ball)
       call link_twists(motion, contact%links(2), surface)
@@ -108,6 +115,8 @@ contains
           variation%gaps(p, 0) = variation%gaps(p, 0) - numbers(4) - numbers(17)
           variation%sliding(p) = numbers(of_sliding)
         end if
+        if (.not. contact%is_rigid) variation%normal_force(p) = vary_normal_force(contact, place%gap, place%gap_rate(), &
+          contact_change_type(gap=variation%gaps(p, 0), gap_rate=variation%gaps(p, 1)), numbers)
         variation%turns(p, :) = surface(p, 1:3, 0) + turn(relative%r, twist(1:3))
         if (.not. contact%has_friction()) cycle
         call vary_slip(contact, shape, relative, ball(p, 1:3, :) - surface(p, 1:3, :), numbers, moved, slips)
@@ -222,7 +231,7 @@ contains
     end do
   end subroutine find_moved
 
-  !> Find the derivatives of the forces of rigid contacts that are closed, after those of the accelerations with these forces held; these
+  !> Find the derivatives of the forces of rigid contacts that are closed, and of friction, after those of the accelerations with these held; these
   !> accelerations get what the forces add. Fails at a corner of a path, where accelerations jump, and where equilibrium does not determine
   !> forces that matter.
   subroutine find_varied_contacts(model, plan, dynamics, state, work, contact, sensitivity, err)
@@ -238,14 +247,14 @@ contains
     type(contact_variation_type), allocatable :: variations(:)
     integer, allocatable :: acting(:)
     real(wp), allocatable :: a(:, :), x(:), right(:), known(:, :), answer(:)
-    real(wp), allocatable :: lines(:, :)
+    real(wp), allocatable :: lines(:, :), directions(:, :)
     real(wp), allocatable :: moved(:)
     integer, allocatable :: of_contact(:), along(:), chosen(:)
     integer :: i, j, k, m, n, p
     logical :: depends
 
     associate (motion => sensitivity%motion, contacts => model%mechanism%contacts)
-      acting = pack([(i, i=1, size(contacts))], contact%acts .and. contacts%is_rigid)
+      acting = pack([(i, i=1, size(contacts))], contact%acts .and. (contacts%is_rigid .or. contacts%static_friction > 0.0_wp))
       n = size(acting)
       if (.not. allocated(motion%contact)) allocate (motion%contact(motion%n_parameters, 3*size(contacts)))
       motion%contact = 0.0_wp
@@ -254,13 +263,17 @@ contains
       call find_contact_rows(model%mechanism, plan, dynamics, state, work, equations, err)
       if (.not. allocated(err)) call sensitivity%complete(model, state, err)
       if (allocated(err)) return
-      allocate (variations(n), known(3, n), lines(3, 3*n), of_contact(3*n), along(3*n))
+      allocate (variations(n), known(3, n), directions(2, n), lines(3, 3*n), of_contact(3*n), along(3*n))
       do k = 1, n
         call check_path(contacts(acting(k)), equations%places(k)%part, state%t, err)
         if (allocated(err)) return
         call vary_contact(model, motion, acting(k), variations(k))
       end do
-      call find_lines(contacts(acting), contact%sticks(acting), contact%forces(:, acting), m, of_contact, along, lines)
+      do k = 1, n
+        directions(:, k) = friction_direction(contact%forces(:, acting(k)), &
+                                              matmul(contact%direction(:, acting(k)), equations%axes(:, 2:3, k)))
+      end do
+      call find_lines(contacts(acting), contact%sticks(acting), directions, m, of_contact, along, lines)
       ! no coordinate moves a planar mechanism out of its plane
       moved = [(dot_product(equations%rows(:, along(j), of_contact(j)), equations%answers(:, along(j), of_contact(j))), j=1, m)]
       chosen = pack([(j, j=1, m)], moved > least_mobility*maxval(moved))
@@ -278,8 +291,8 @@ contains
       do p = 1, motion%n_parameters
         answer = 0.0_wp*equations%answers(:, 1, 1)
         do k = 1, n
-          known(:, k) = turned_friction(contacts(acting(k)), contact%sticks(acting(k)), contact%forces(:, acting(k)), &
-                                        equations, k, variations(k), p)
+          known(:, k) = turned_friction(contacts(acting(k)), contact%sticks(acting(k)), contact%forces(1, acting(k)), &
+                                        directions(:, k), equations, k, variations(k), p)
           answer = answer + matmul(equations%answers(:, :, k), known(:, k))
         end do
         do j = 1, m
@@ -311,12 +324,12 @@ contains
     end associate
   end subroutine find_varied_contacts
 
-  !> The unknown forces of closed contacts, along normal and tangents: one of each that slides, with its friction, and three of each that
-  !> sticks.
-  pure subroutine find_lines(contacts, sticks, forces, m, of_contact, along, lines)
+  !> The unknown forces of closed contacts, along normal and tangents: one of each rigid one, with its friction while it slides, and two
+  !> beside it of each that sticks.
+  pure subroutine find_lines(contacts, sticks, directions, m, of_contact, along, lines)
     type(contact_type), intent(in) :: contacts(:)     !< the contacts
     logical, intent(in) :: sticks(:)                  !< each is held by friction
-    real(wp), intent(in) :: forces(:, :)              !< (3,contacts) along normal and tangents [N]
+    real(wp), intent(in) :: directions(:, :)          !< (2,contacts) of the friction, along the tangents; zero: there is none
     integer, intent(out) :: m                         !< how many unknowns there are
     integer, intent(out) :: of_contact(:)             !< the contact of each
     integer, intent(out) :: along(:)                  !< axis along which it leaves no acceleration
@@ -326,31 +339,34 @@ contains
     m = 0
     lines = 0.0_wp
     do i = 1, size(contacts)
-      do c = 1, merge(3, 1, sticks(i))
+      do c = merge(1, 2, contacts(i)%is_rigid), merge(3, 1, sticks(i))
         m = m + 1
         of_contact(m) = i
         along(m) = c
         lines(c, m) = 1.0_wp
       end do
-      if (.not. sticks(i)) lines(2:3, m) = contacts(i)%sliding_friction*direction_of(forces(2:3, i))
+      if (contacts(i)%is_rigid .and. .not. sticks(i)) lines(2:3, m) = contacts(i)%sliding_friction*directions(:, i)
     end do
   end subroutine find_lines
 
-  !> The direction of a force.
-  pure function direction_of(force) result(direction)
-    real(wp), intent(in) :: force(2)   !< along both tangents [N]
+  !> The direction of a friction: against the last slip where it is zero, as when a compliant contact closes.
+  pure function friction_direction(force, slid) result(direction)
+    real(wp), intent(in) :: force(3)   !< of the contact, along normal and tangents [N]
+    real(wp), intent(in) :: slid(2)    !< direction in which it slid last, along the tangents
     real(wp) :: direction(2)
 
-    direction = 0.0_wp
-    if (norm2(force) > 0.0_wp) direction = force/norm2(force)
-  end function direction_of
+    direction = -slid
+    if (norm2(force(2:3)) > 0.0_wp) direction = force(2:3)
+    if (norm2(direction) > 0.0_wp) direction = direction/norm2(direction)
+  end function friction_direction
 
-  !> The change of the friction of a contact that slides, under a normal force that is held, along normal and tangents: by its coefficient,
-  !> and by the direction of the slip.
-  pure function turned_friction(contact, sticks, force, equations, k, varied, p) result(change)
+  !> The change of the friction of a contact that slides, along normal and tangents, under a normal force that is held if the contact is rigid:
+  !> by its coefficient, by the direction of the slip, and by the normal force of a compliant one.
+  pure function turned_friction(contact, sticks, normal_force, against, equations, k, varied, p) result(change)
     type(contact_type), intent(in) :: contact                !< the contact
     logical, intent(in) :: sticks                            !< friction holds it
-    real(wp), intent(in) :: force(3)                         !< its force, along normal and tangents [N]
+    real(wp), intent(in) :: normal_force                     !< its normal force [N]
+    real(wp), intent(in) :: against(2)                       !< direction of its friction, along the tangents
     type(contact_rows_type), intent(in) :: equations         !< equations of the contacts
     integer, intent(in) :: k                                 !< its place among them
     type(contact_variation_type), intent(in) :: varied       !< its derivatives
@@ -359,8 +375,8 @@ contains
 
     change = 0.0_wp
     if (sticks .or. .not. contact%has_friction()) return
-    direction = -direction_of(force(2:3))
-    change(2:3) = -varied%sliding(p)*force(1)*direction
+    direction = -against
+    change(2:3) = -(varied%sliding(p)*normal_force + contact%sliding_friction*varied%normal_force(p))*direction
     associate (axes => equations%axes(:, :, k), place => equations%places(k))
       slip = matmul(place%slip, axes(:, 2:3))
       aside = [-direction(2), direction(1)]
@@ -368,7 +384,7 @@ contains
       ! a slip that errors of integration have left has no direction of its own
       if (norm2(slip) > slip_of_errors*place%speed) &
         turning = turning + dot_product(aside, matmul(varied%slips(p, :, 0), axes(:, 2:3)))/norm2(slip)
-      change(2:3) = change(2:3) - contact%sliding_friction*force(1)*turning*aside
+      change(2:3) = change(2:3) - contact%sliding_friction*normal_force*turning*aside
     end associate
   end function turned_friction
 

@@ -3,6 +3,7 @@
 !> A pair that slips has f = -s mu b(w), with the bearing load b of its wrench w, which is linear in the forces of all frictions. With the
 !> derivatives of the wrenches under frictions that are held, w0', those of the forces satisfy f' = -s (mu' b + mu (b_w (w0' + W f') + b')),
 !> where W are the wrenches by the forces, and b' the derivative of b by its own numbers. Pairs that stick have no acceleration.
+!> Contacts of links that act follow: w0' contains their derivatives under frictions that are held, W what frictions change of their forces.
 module mech9_varied_frictions
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_singular
@@ -68,6 +69,7 @@ contains
                                                                                  forces(:, p))
         end do
       end do
+      call add_to_contacts(friction, forces, motion)
       ! a coordinate that is held needs the force that its stuck pair gives
       do i = 1, n
         if (friction%modes%group(i) == 0) cycle
@@ -77,6 +79,25 @@ contains
       end do
     end associate
   end subroutine find_varied_frictions
+
+  !> Add to the derivatives of the forces of contacts what those of frictions change of them.
+  pure subroutine add_to_contacts(friction, forces, motion)
+    class(friction_motion_type), intent(in) :: friction        !< the frictions, solved in this motion
+    real(wp), intent(in) :: forces(:, :)                       !< (frictions,P) the derivatives of frictions
+    type(varied_motion_type), intent(inout) :: motion          !< with the derivatives of contacts, frictions held
+    integer :: i, k, p
+
+    if (.not. friction%touches) return
+    associate (touching => friction%touching)
+      do i = 1, size(touching%acting)
+        k = touching%acting(i)
+        do p = 1, size(forces, 2)
+          motion%contact(p, 3*k - 2:3*k) = motion%contact(p, 3*k - 2:3*k) &
+                                           + matmul(touching%axes(:, :, i), matmul(friction%pressed(:, k, 1:), forces(:, p)))
+        end do
+      end do
+    end associate
+  end subroutine add_to_contacts
 
   !> The derivatives of the utilization of a pair that sticks alone, without its sign, after find_varied_frictions with the pairs that
   !> stick: of the part of its bound that it needs. Fails where wrenches have no derivatives.
