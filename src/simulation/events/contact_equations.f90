@@ -28,7 +28,7 @@ module mech9_contact_equations
   use mech9_motion_system, only: motion_system_type
   implicit none
   private
-  public :: contact_equations_type, contact_outcome_type, find_contact_equations, find_impact, find_pushing
+  public :: contact_equations_type, contact_outcome_type, shock_type, find_contact_equations, find_impact, find_pushing
 
   !> The equations of contacts in one position: of the gap of each, and of two tangents of contacts of links.
   type :: contact_equations_type
@@ -54,6 +54,13 @@ module mech9_contact_equations
     real(wp), allocatable :: direction(:, :)     !< (3,contacts) in which it slides, of length 1; fixed axes
     real(wp), allocatable :: impulse(:, :)       !< (3,contacts) of an impact on the ball of a contact of links, fixed axes [N s]
   end type contact_outcome_type
+
+  !> An impact on some contacts.
+  type :: shock_type
+    real(wp), allocatable :: impulses(:, :)      !< (3,contacts) along normal and tangents [N m s, N s]
+    real(wp), allocatable :: rates(:)            !< (contacts) of the gaps after it [rad/s, m/s]
+    logical, allocatable :: stopped(:)           !< (contacts) friction leaves no slip
+  end type shock_type
 
 contains
 
@@ -135,23 +142,23 @@ contains
   end subroutine find_contact_equations
 
   !> Find the impulses of an impact. Fails where drives move a coordinate beyond its stop, or links into each other.
-  subroutine find_impact(system, contacts, equations, restitution, impulses, rates, stopped, err)
+  subroutine find_impact(system, contacts, equations, restitution, shock, err)
     class(motion_system_type), intent(inout) :: system         !< the system; its independent rates change
     type(stop_contact_type), intent(in) :: contacts(:)         !< the contacts that touch
     type(contact_equations_type), intent(in) :: equations      !< their equations, with the rates before the impact
     real(wp), intent(in) :: restitution(:)                     !< (contacts) of each
-    real(wp), intent(out) :: impulses(:, :)                    !< (3,contacts) along normal and tangents [N m s, N s]
-    real(wp), intent(out) :: rates(:)                          !< (contacts) of the gaps after the impact [rad/s, m/s]
-    logical, intent(out) :: stopped(:)                         !< (contacts) friction leaves no slip
+    type(shock_type), intent(out) :: shock                     !< the impact
     type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
     type(friction_cones_type) :: cones
+    real(wp) :: change(size(equations%free))
     logical :: holds(size(contacts)), solved
     integer :: i, found
 
-    impulses = 0.0_wp
-    stopped = .false.
+    allocate (shock%impulses(3, size(contacts)), source=0.0_wp)
+    allocate (shock%stopped(size(contacts)), source=.false.)
+    shock%rates = equations%rates
     if (all(equations%rates >= -equations%round_off)) then
-      rates = merge(equations%rates, 0.0_wp, equations%rates > equations%round_off)
+      shock%rates = merge(equations%rates, 0.0_wp, equations%rates > equations%round_off)
       return
     end if
     if (equations%rubs) then
@@ -171,27 +178,27 @@ contains
         call fail_undecided(system, contacts, 2, err)
         return
       end if
-      impulses = reshape(cones%force, shape(impulses))
-      where (abs(impulses) <= round_off_of_impacts*maxval(abs(impulses))) impulses = 0.0_wp
+      shock%impulses = reshape(cones%force, shape(shock%impulses))
+      where (abs(shock%impulses) <= round_off_of_impacts*maxval(abs(shock%impulses))) shock%impulses = 0.0_wp
       holds = cones%mode /= opens .and. contacts%is_rigid
-      stopped = cones%mode == sticks
+      shock%stopped = cones%mode == sticks
     else
       call solve_complementarity(size(contacts), equations%g, (1.0_wp + restitution)*equations%rates, equations%round_off, &
-                                 impulses(1, :), holds, solved)
+                                 shock%impulses(1, :), holds, solved)
     end if
     if (.not. solved) then
       call fail_unsolved(system, contacts, equations, err)
       return
     end if
-    rates = equations%rates
     associate (changed => system%plan%independent(equations%free))
       do i = 1, size(contacts)
-        rates = rates + matmul(matmul(equations%answers(:, :, i), impulses(:, i)), equations%rows(:, 1, :))
-        system%state%dq(changed) = system%state%dq(changed) + matmul(equations%answers(:, :, i), impulses(:, i))
+        change = matmul(equations%answers(:, :, i), shock%impulses(:, i))
+        shock%rates = shock%rates + matmul(change, equations%rows(:, 1, :))
+        system%state%dq(changed) = system%state%dq(changed) + change
       end do
     end associate
-    where (holds) rates = -restitution*equations%rates
-    where (abs(rates) <= equations%round_off .and. .not. holds) rates = 0.0_wp
+    where (holds) shock%rates = -restitution*equations%rates
+    where (abs(shock%rates) <= equations%round_off .and. .not. holds) shock%rates = 0.0_wp
   end subroutine find_impact
 
   !> The friction cones of contacts, with W alone.

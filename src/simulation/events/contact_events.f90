@@ -16,7 +16,8 @@ module mech9_contact_events
   use mech9_contact, only: contact_place_type
   use mech9_contact_motion, only: correct_rates, place_of_contact, acceleration_of_contact
   use mech9_varied_impact, only: impact_type
-  use mech9_contact_equations, only: contact_equations_type, contact_outcome_type, find_contact_equations, find_impact, find_pushing
+  use mech9_contact_equations, only: contact_equations_type, contact_outcome_type, shock_type, find_contact_equations, &
+    find_impact, find_pushing
   implicit none
   private
   public :: begin_contacts, meet_contacts, find_pressed, refuse_jump
@@ -411,11 +412,14 @@ contains
     !> Find the impact, and the contacts that push after it.
     subroutine meet(err)
       type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
-      logical :: at_rest(size(touch)), stopped(size(touch))
+      type(shock_type) :: shock
+      logical :: at_rest(size(touch))
       integer :: sliding
 
-      call find_impact(system, contacts%ends(touch), equations, restitution, impulses, rates, stopped, err)
+      call find_impact(system, contacts%ends(touch), equations, restitution, shock, err)
       if (allocated(err)) return
+      impulses = shock%impulses
+      rates = shock%rates
       at_rest = .not. abs(rates) > 0.0_wp
       ! the force of a released end passes zero: round-off must not close it again
       if (.not. any(impulses(1, :) > 0.0_wp)) at_rest = at_rest .and. .not. (touch == met .and. contacts%ends(touch)%held)
@@ -430,7 +434,7 @@ contains
           call find_pushing(system, contacts%ends(touch), after, at_rest, sliding, outcome, err)
       end if
       if (allocated(err)) return
-      outcome%stopped = stopped
+      outcome%stopped = shock%stopped
       do i = 1, size(touch)
         outcome%impulse(:, i) = matmul(equations%axes(:, :, i), impulses(:, i))
       end do

@@ -101,7 +101,7 @@ contains
     type(error_type), allocatable, intent(out) :: err          !< allocated if it failed
     type(contact_variation_type) :: variations(size(ends))
     type(conditions_type) :: conditions
-    real(wp) :: impulses(3, size(ends)), known(3, size(ends))
+    real(wp) :: impulses(3, size(ends))
     integer :: i, j, k, p
 
     system%state%dq = rates
@@ -118,9 +118,9 @@ contains
     associate (values => system%sensitivity%values, plan => system%plan)
       do p = 1, size(target, 1)
         do k = 1, size(ends)
-          known(:, k) = turned_impulse(ends(k), impact%sticks(k), equations%axes(:, :, k), impact%whole(:, k), variations(k), p)
+          impulses(:, k) = turned_impulse(ends(k), impact%sticks(k), equations%axes(:, :, k), impact%whole(:, k), variations(k), p)
         end do
-        call find_impulses(system, ends, equations, conditions, variations, target, known, p, impulses, err)
+        call find_impulses(p, impulses, err)
         if (allocated(err)) return
         do i = 1, size(plan%free)
           j = findloc(equations%free, plan%free_places(i), dim=1)
@@ -129,6 +129,48 @@ contains
       end do
     end associate
     call system%show_sensitivity(err)
+  contains
+    !> Find the derivatives of the impulses by one parameter, beside those that are known. Fails where ends depend on each other.
+    subroutine find_impulses(p, impulses, err)
+      integer, intent(in) :: p                               !< number of the parameter
+      real(wp), intent(inout) :: impulses(:, :)              !< (3,ends) derivatives along normals and tangents; the known ones at first [N s]
+      type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+      real(wp), dimension(conditions%count, conditions%count) :: a
+      real(wp), dimension(conditions%count) :: right, x
+      real(wp) :: answer(size(equations%free)), row(size(equations%free))
+      integer :: i, j
+      logical :: depends
+
+      answer = 0.0_wp
+      do i = 1, size(ends)
+        answer = answer + matmul(equations%answers(:, :, i), impulses(:, i))
+      end do
+      do i = 1, conditions%count
+        associate (k => conditions%end(i), axis => conditions%axis(:, i))
+          row = matmul(equations%rows(:, :, k), axis)
+          do j = 1, conditions%count
+            a(i, j) = dot_product(row, matmul(equations%answers(:, :, conditions%end(j)), conditions%line(:, j)))
+          end do
+          a(i, i) = a(i, i) + conditions%own(i)
+          right(i) = -dot_product(row, answer)
+          if (ends(k)%is_stop()) then
+            right(i) = right(i) + target(p, k) - ends(k)%direction*system%sensitivity%motion%q(p, 1, ends(k)%coordinate)
+          else if (abs(axis(1)) > 0.0_wp) then
+            right(i) = right(i) + target(p, k) - variations(k)%gaps(p, 1)
+          else
+            right(i) = right(i) - dot_product(matmul(equations%axes(:, :, k), axis), variations(k)%slips(p, :, 0))
+          end if
+        end associate
+      end do
+      call solve_least(a, right, spread(1.0_wp, 1, size(x)), x, depends)
+      if (depends) then
+        call refuse_at(system, cause_several_impacts, ends(1), err)
+        return
+      end if
+      do j = 1, conditions%count
+        impulses(:, conditions%end(j)) = impulses(:, conditions%end(j)) + x(j)*conditions%line(:, j)
+      end do
+    end subroutine find_impulses
   end subroutine meet_targets
 
   !> Find the conditions of an impact. Fails where a contact slides that friction stops at its bound: it is stopped on one side of it alone.
@@ -189,56 +231,6 @@ contains
       end associate
     end subroutine add
   end subroutine find_conditions
-
-  !> Find the derivatives of the impulses by one parameter, along normals and tangents. Fails where ends depend on each other.
-  subroutine find_impulses(system, ends, equations, conditions, variations, target, known, p, impulses, err)
-    class(motion_system_type), intent(in) :: system                !< the system, with its derivatives beside that of the impulses
-    type(stop_contact_type), intent(in) :: ends(:)                 !< ends of stops and contacts with impulses
-    type(contact_equations_type), intent(in) :: equations          !< their equations
-    type(conditions_type), intent(in) :: conditions                !< the conditions
-    type(contact_variation_type), intent(in) :: variations(:)      !< (ends) derivatives of contacts behind the impact
-    real(wp), intent(in) :: target(:, :)                           !< (P,ends) derivatives of the rates of their gaps there
-    real(wp), intent(in) :: known(:, :)                            !< (3,ends) derivatives of impulses that are known [N s]
-    integer, intent(in) :: p                                       !< number of the parameter
-    real(wp), intent(out) :: impulses(:, :)                        !< (3,ends) all derivatives of impulses [N s]
-    type(error_type), allocatable, intent(out) :: err              !< allocated if it failed
-    real(wp), dimension(conditions%count, conditions%count) :: a
-    real(wp), dimension(conditions%count) :: right, x
-    real(wp) :: answer(size(equations%free)), row(size(equations%free))
-    integer :: i, j
-    logical :: depends
-
-    impulses = known
-    answer = 0.0_wp
-    do i = 1, size(ends)
-      answer = answer + matmul(equations%answers(:, :, i), known(:, i))
-    end do
-    do i = 1, conditions%count
-      associate (k => conditions%end(i), axis => conditions%axis(:, i))
-        row = matmul(equations%rows(:, :, k), axis)
-        do j = 1, conditions%count
-          a(i, j) = dot_product(row, matmul(equations%answers(:, :, conditions%end(j)), conditions%line(:, j)))
-        end do
-        a(i, i) = a(i, i) + conditions%own(i)
-        right(i) = -dot_product(row, answer)
-        if (ends(k)%is_stop()) then
-          right(i) = right(i) + target(p, k) - ends(k)%direction*system%sensitivity%motion%q(p, 1, ends(k)%coordinate)
-        else if (abs(axis(1)) > 0.0_wp) then
-          right(i) = right(i) + target(p, k) - variations(k)%gaps(p, 1)
-        else
-          right(i) = right(i) - dot_product(matmul(equations%axes(:, :, k), axis), variations(k)%slips(p, :, 0))
-        end if
-      end associate
-    end do
-    call solve_least(a, right, spread(1.0_wp, 1, size(x)), x, depends)
-    if (depends) then
-      call refuse_at(system, cause_several_impacts, ends(1), err)
-      return
-    end if
-    do j = 1, conditions%count
-      impulses(:, conditions%end(j)) = impulses(:, conditions%end(j)) + x(j)*conditions%line(:, j)
-    end do
-  end subroutine find_impulses
 
   !> The derivative of the impulse of friction of a contact that slides, under a normal impulse and a slip that are held, along normal and
   !> tangents: by its coefficient, and by the turn of the surface.

@@ -291,8 +291,9 @@ contains
       do p = 1, motion%n_parameters
         answer = 0.0_wp*equations%answers(:, 1, 1)
         do k = 1, n
-          known(:, k) = turned_friction(contacts(acting(k)), contact%sticks(acting(k)), contact%forces(1, acting(k)), &
-                                        directions(:, k), equations, k, variations(k), p)
+          known(:, k) = 0.0_wp
+          if (.not. contact%sticks(acting(k))) known(:, k) = turned_friction(contacts(acting(k)), contact%forces(1, acting(k)), &
+                                                                             directions(:, k), equations, k, variations(k), p)
           answer = answer + matmul(equations%answers(:, :, k), known(:, k))
         end do
         do j = 1, m
@@ -362,9 +363,8 @@ contains
 
   !> The change of the friction of a contact that slides, along normal and tangents, under a normal force that is held if the contact is rigid:
   !> by its coefficient, by the direction of the slip, and by the normal force of a compliant one.
-  pure function turned_friction(contact, sticks, normal_force, against, equations, k, varied, p) result(change)
+  pure function turned_friction(contact, normal_force, against, equations, k, varied, p) result(change)
     type(contact_type), intent(in) :: contact                !< the contact
-    logical, intent(in) :: sticks                            !< friction holds it
     real(wp), intent(in) :: normal_force                     !< its normal force [N]
     real(wp), intent(in) :: against(2)                       !< direction of its friction, along the tangents
     type(contact_rows_type), intent(in) :: equations         !< equations of the contacts
@@ -374,7 +374,7 @@ contains
     real(wp) :: change(3), direction(2), slip(2), aside(2), turning
 
     change = 0.0_wp
-    if (sticks .or. .not. contact%has_friction()) return
+    if (.not. contact%has_friction()) return
     direction = -against
     change(2:3) = -(varied%sliding(p)*normal_force + contact%sliding_friction*varied%normal_force(p))*direction
     associate (axes => equations%axes(:, :, k), place => equations%places(k))
