@@ -24,6 +24,7 @@ set_property(CACHE CMAKE_BUILD_TYPE PROPERTY STRINGS Release Dev Debug Sanitize 
 set(MECH9_FORTRAN_OPTIONS "")
 set(MECH9_FORTRAN77_OPTIONS "")
 set(MECH9_SCALAR_COMPILE "")
+set(MECH9_LANES_COMPILE "")
 if(CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
   # The language and its warnings, for the project's own sources only. Sums are rounded as they are written and numbers that
   # are not finite are looked for: -ffast-math among the user's flags would break both, silently.
@@ -33,6 +34,13 @@ if(CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
   set(MECH9_FORTRAN77_OPTIONS -std=legacy -fno-implicit-none -w)
   # Of files whose numbers are read again before they have arrived as vectors (src/CMakeLists.txt).
   set(MECH9_SCALAR_COMPILE -fno-tree-slp-vectorize)
+
+  # Of files whose loops go over designs side by side (src/CMakeLists.txt).
+  set(MECH9_LANES_COMPILE -ffp-contract=off)
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|amd64|AMD64)$")
+    set(MECH9_LANES_avx2 -mavx2)
+    set(MECH9_LANES_avx512 -mavx512f -mavx512dq -mavx512vl -mprefer-vector-width=512)
+  endif()
 
   # Optimising gfortran 12 takes the bounds of an array, and the length of a text, that are (re)allocated by an assignment for
   # uninitialized (PR fortran/108889); the debug build still warns of variables that are uninitialized on every way.
@@ -67,6 +75,7 @@ if(CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
   # How the floors are compiled in an optimised build (src/CMakeLists.txt); procedures that nothing calls are left out of programs.
   if(CMAKE_BUILD_TYPE STREQUAL "Release")
     set(MECH9_FAST_COMPILE -O3)
+    list(APPEND MECH9_LANES_COMPILE -O3 --param=max-completely-peel-times=0 -fno-trapping-math)
     # passes that take a third of the time of compiling and make no code smaller are left out
     set(MECH9_SMALL_COMPILE -Os -fno-tree-pre -fno-code-hoisting -fno-gcse -fno-rerun-cse-after-loop -fno-schedule-insns2
       -fno-expensive-optimizations -fno-tree-ccp)

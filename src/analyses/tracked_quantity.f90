@@ -54,6 +54,7 @@ module mech9_tracked_quantity
     procedure :: take_at
     procedure :: begin_piece
     procedure :: end_piece
+    procedure :: take_motion
     procedure :: finish
     procedure :: number
     procedure :: find_gradient
@@ -271,6 +272,40 @@ contains
     end function between
   end subroutine take_values
 
+  !> Take a whole motion without joints of laws: all outputs, as the procedures above take them one by one.
+  pure subroutine take_motion(self, rule, t, y)
+    class(tracked_quantity_type), intent(inout) :: self   !< the quantity, without any outputs, whose derivatives are not followed
+    type(chebyshev_type), intent(in) :: rule              !< points in an interval
+    real(wp), intent(in) :: t(:)                          !< (n) times of the outputs [s]
+    real(wp), intent(in) :: y(0:, :)                      !< (0:2,n) position, rate and acceleration, each the derivative of the one before
+    integer :: first, j, last, n
+    logical :: of_ends
+
+    n = size(t)
+    call self%sums%begin(t(1), y(self%order, 1))
+    self%seen = n
+    of_ends = self%order == 0 .and. any(self%take == [character(len=8) :: 'min', 'max', 'peak', 'range'])
+    do j = 1, merge(n - 1, 0, self%follows())
+      if (of_ends) then
+        if (rate_keeps_sign(t(j + 1) - t(j), y(:, j), y(:, j + 1))) then
+          call self%sums%add_value(t(j + 1), y(0, j + 1))
+          cycle
+        end if
+      end if
+      ! the outputs that are kept when the interval is taken into account
+      first = max(1, j - 1)
+      last = min(n, j + 2)
+      if (j == 1) last = min(n, most_outputs - 1)
+      if (j == n - 1) first = max(1, n - most_outputs + 1)
+      self%count = last - first + 1
+      self%t(:self%count) = t(first:last)
+      self%y(:, :self%count) = y(:, first:last)
+      self%done = j - first
+      call add_intervals(self, rule, self%done + 1)
+    end do
+    self%sums%last = y(self%order, n)
+  end subroutine take_motion
+
   !> End with the last output.
   pure subroutine finish(self, rule)
     class(tracked_quantity_type), intent(inout) :: self   !< the quantity
@@ -364,17 +399,26 @@ contains
   pure logical function has_extremes_at_ends(self, j) result(at_ends)
     type(tracked_quantity_type), intent(in) :: self   !< the quantity
     integer, intent(in) :: j                          !< number of the interval
-    real(wp) :: coefficients(5), a(0:2), b(0:2), h, middle
 
     at_ends = .false.
     if (self%order > 0 .or. all(self%take /= [character(len=8) :: 'min', 'max', 'peak', 'range'])) return
-    h = self%t(j + 1) - self%t(j)
-    a = self%y(:, j)
-    b = self%y(:, j + 1)
-    middle = 5.0_wp*(b(0) - a(0))/h - 2.0_wp*(a(1) + b(1)) + 0.25_wp*h*(b(2) - a(2))
-    coefficients = [a(1), a(1) + 0.25_wp*h*a(2), middle, b(1) - 0.25_wp*h*b(2), b(1)]
-    at_ends = all(coefficients > 0.0_wp) .or. all(coefficients < 0.0_wp)
+    at_ends = rate_keeps_sign(self%t(j + 1) - self%t(j), self%y(:, j), self%y(:, j + 1))
   end function has_extremes_at_ends
+
+  !> Whether the rate of the polynomial of fifth degree through two outputs keeps its sign between them.
+  pure logical function rate_keeps_sign(h, a, b) result(keeps)
+    real(wp), intent(in) :: h        !< time between the outputs [s]
+    real(wp), intent(in) :: a(0:2)   !< position, rate and acceleration at the first
+    real(wp), intent(in) :: b(0:2)   !< the same at the second
+    real(wp) :: coefficients(5)
+
+    coefficients(1) = a(1)
+    coefficients(2) = a(1) + 0.25_wp*h*a(2)
+    coefficients(3) = 5.0_wp*(b(0) - a(0))/h - 2.0_wp*(a(1) + b(1)) + 0.25_wp*h*(b(2) - a(2))
+    coefficients(4) = b(1) - 0.25_wp*h*b(2)
+    coefficients(5) = b(1)
+    keeps = all(coefficients > 0.0_wp) .or. all(coefficients < 0.0_wp)
+  end function rate_keeps_sign
 
   !> The number itself, after the last output.
   pure real(wp) function number(self)

@@ -7,7 +7,7 @@ module mech9_sine_cosine
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: cosines_and_sines
+  public :: cosines_and_sines, largest_angle, quarter, per_quarter, whole
 
   !> Angles up to this one are reduced without loss of digits [rad].
   real(wp), parameter :: largest_angle = 1.0e6_wp

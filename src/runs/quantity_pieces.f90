@@ -9,7 +9,7 @@ module mech9_quantity_pieces
   use mech9_tracked_quantity, only: tracked_quantity_type
   implicit none
   private
-  public :: quantity_pieces_type
+  public :: quantity_pieces_type, points_between
 
   !> Points of the polynomial that follows a column in a piece, its ends included.
   integer, parameter :: points_between = 10

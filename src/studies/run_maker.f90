@@ -1,4 +1,5 @@
-!> One run of a study, made from its number. A maker shares nothing with others: each thread and each process has its own.
+!> Runs of a study, made from their numbers. A maker shares nothing with others: each thread and each process has its own. Runs that
+!> can be made side by side always are, one of them alone, too, so that a run has the same bits in any company.
 module mech9_run_maker
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use mech9_kinds, only: wp
@@ -15,9 +16,14 @@ module mech9_run_maker
   use mech9_exponents, only: exponents_found_type, find_exponents
   use mech9_end_class, only: find_cycle, find_rest
   use mech9_pair_axes, only: pair_axes_type, pair_axes, turning
+  use mech9_lane_group, only: lanes
+  use mech9_lane_runs, only: lane_runs_type
   implicit none
   private
-  public :: made_run_type, run_maker_type
+  public :: made_run_type, run_maker_type, most_runs
+
+  !> Runs that are made at once at most.
+  integer, parameter :: most_runs = lanes
 
   !> A run that is made.
   type :: made_run_type
@@ -45,20 +51,26 @@ module mech9_run_maker
     integer :: n_columns = 0                                     !< of the rows that are kept; 0: none are kept
     integer :: n_outputs = 0                                     !< rows of a run
     type(run_ending_type) :: ending                              !< of the last run, where it may be carried on
+    type(lane_runs_type), allocatable :: side_by_side            !< makes several runs at once, where it is allocated
   contains
     procedure :: begin
     procedure :: make
+    procedure :: make_several
+    procedure :: at_once
+    procedure :: made_at_once
     procedure :: shape_of_rows
   end type run_maker_type
 
 contains
 
   !> Prepare a maker for the runs of a study.
-  subroutine begin(self, model, varied)
+  subroutine begin(self, model, varied, one_by_one)
     class(run_maker_type), intent(out) :: self              !< the maker
     type(model_type), intent(in) :: model                   !< the model with the values of the data file
     class(variable_model_type), intent(in) :: varied        !< the model as a function of its parameters; copied
+    logical, intent(in), optional :: one_by_one             !< each run is followed alone, for comparison; not unless given
     type(columns_type) :: columns
+    logical :: alone
 
     self%study = model%request%study
     self%parameters = model%parameters
@@ -67,6 +79,14 @@ contains
     self%makes_motion = self%study%exponents == 0 .or. self%n_taken > 0 .or. self%study%classes .or. self%study%carries() .or. &
                         model%request%section%is_wanted .or. model%request%output%hdf5_runs
     allocate (self%varied, source=varied)
+    alone = self%study%exponents > 0 .or. self%study%carries() .or. self%study%classes .or. model%request%section%is_wanted .or. &
+            model%request%output%hdf5_runs
+    if (present(one_by_one)) alone = alone .or. one_by_one
+    if (.not. alone) then
+      allocate (self%side_by_side)
+      call self%side_by_side%begin(model)
+      if (.not. self%side_by_side%used) deallocate (self%side_by_side)
+    end if
     if (.not. model%request%output%hdf5_runs) return
     call columns_of_runs(model, columns)
     self%n_columns = columns%width()
@@ -81,9 +101,90 @@ contains
     shape_of_rows = [self%n_columns, self%n_outputs]
   end function shape_of_rows
 
+  !> How many runs are made at once at most.
+  pure integer function at_once(self)
+    class(run_maker_type), intent(in) :: self   !< the maker
+
+    at_once = merge(most_runs, 1, allocated(self%side_by_side))
+  end function at_once
+
+  !> How many runs were made side by side so far.
+  pure integer function made_at_once(self)
+    class(run_maker_type), intent(in) :: self   !< the maker
+
+    made_at_once = 0
+    if (allocated(self%side_by_side)) made_at_once = self%side_by_side%made
+  end function made_at_once
+
   !> Make a run. Its numbers depend on the number of the run alone, unless the study carries states on: then the runs before it were made
   !> by this maker, and it begins where the last one ended; after a failure it begins as the data file says.
   subroutine make(self, number, run, interruption)
+    class(run_maker_type), intent(inout) :: self   !< the maker
+    integer, intent(in) :: number                  !< of the run in the whole study, from 1
+    type(made_run_type), intent(out) :: run        !< the run, which may have failed
+    class(interruption_type), intent(inout), optional :: interruption   !< is asked whether the run shall stop
+    type(made_run_type) :: runs(1)
+
+    call self%make_several([number], runs, interruption)
+    run = runs(1)
+  end subroutine make
+
+  !> Make runs: side by side as far as this is possible, the others one by one.
+  subroutine make_several(self, numbers, runs, interruption)
+    class(run_maker_type), intent(inout) :: self       !< the maker
+    integer, intent(in) :: numbers(:)                  !< of the runs in the whole study, from 1; at most `at_once`
+    type(made_run_type), intent(inout) :: runs(:)      !< get the runs, which may have failed
+    class(interruption_type), intent(inout), optional :: interruption   !< is asked whether the runs shall stop
+    logical :: done(size(numbers))
+    integer :: i
+
+    done = .false.
+    if (allocated(self%side_by_side)) call make_side_by_side(self, numbers, runs, done, interruption)
+    do i = 1, size(numbers)
+      if (.not. done(i)) call make_alone(self, numbers(i), runs(i), interruption)
+    end do
+  end subroutine make_several
+
+  !> Make runs side by side, as far as this is possible.
+  subroutine make_side_by_side(self, numbers, runs, done, interruption)
+    class(run_maker_type), intent(inout) :: self       !< the maker
+    integer, intent(in) :: numbers(:)                  !< of the runs in the whole study, from 1
+    type(made_run_type), intent(inout) :: runs(:)      !< get the runs that are made
+    logical, intent(out) :: done(:)                    !< the run is made
+    class(interruption_type), intent(inout), optional :: interruption   !< is asked whether the runs shall stop
+    type(model_type), allocatable :: models(:)
+    type(error_type), allocatable :: err
+    real(wp) :: values(size(self%parameters), size(numbers)), quantities(self%n_quantities, size(numbers))
+    integer :: i
+
+    allocate (models(size(numbers)))
+    do i = 1, size(numbers)
+      if (present(interruption)) call interruption%begin_run(numbers(i))
+      call values_of_run(self%study, self%parameters, numbers(i), values(:, i))
+      call self%varied%at(values(:, i), models(i), err)
+      done(i) = .not. allocated(err)
+    end do
+    call self%side_by_side%make(models, quantities, done, interruption)
+    do i = 1, size(numbers)
+      if (.not. done(i)) cycle
+      call take_made(numbers(i), values(:, i), quantities(:, i), runs(i))
+    end do
+  end subroutine make_side_by_side
+
+  !> Take a run that was made beside others.
+  subroutine take_made(number, values, quantities, run)
+    integer, intent(in) :: number              !< of the run in the whole study, from 1
+    real(wp), intent(in) :: values(:)          !< (parameters) in the units of the file
+    real(wp), intent(in) :: quantities(:)      !< (quantities) in their units
+    type(made_run_type), intent(out) :: run    !< the run
+
+    run%number = number
+    run%values = values
+    run%quantities = quantities
+  end subroutine take_made
+
+  !> Make a run by itself.
+  subroutine make_alone(self, number, run, interruption)
     class(run_maker_type), intent(inout) :: self   !< the maker
     integer, intent(in) :: number                  !< of the run in the whole study, from 1
     type(made_run_type), intent(out) :: run        !< the run, which may have failed
@@ -113,7 +214,7 @@ contains
     self%ending = run_ending_type()
     run%exit_code = run%failure%code
     run%quantities = ieee_value(1.0_wp, ieee_quiet_nan)
-  end subroutine make
+  end subroutine make_alone
 
   !> Take the exponents of a motion. A run without one of them fails.
   subroutine take_exponents(self, model, run, interruption)

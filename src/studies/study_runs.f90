@@ -45,6 +45,7 @@ module mech9_study_runs
   contains
     procedure :: begin
     procedure :: hand_out
+    procedure :: left
     procedure :: take
     procedure :: finish
   end type study_runs_type
@@ -96,6 +97,13 @@ contains
       end associate
     end do
   end function hand_out
+
+  !> How many runs of the part were not handed out so far.
+  pure integer function left(self)
+    class(study_runs_type), intent(in) :: self   !< the runs
+
+    left = self%total - self%handed_out
+  end function left
 
   !> Take a run that is made.
   subroutine take(self, run)

@@ -9,7 +9,7 @@ module mech9_study_threads
   use mech9_variable_model, only: variable_model_type
   use mech9_user_calls, only: calls_user_procedures
   use mech9_simulation, only: interruption_type
-  use mech9_run_maker, only: run_maker_type, made_run_type
+  use mech9_run_maker, only: run_maker_type, made_run_type, most_runs
   use mech9_study_runs, only: study_runs_type, all_handed_out, wait_for_others
   implicit none
   private
@@ -56,32 +56,44 @@ contains
     end do
     !$omp parallel do num_threads(threads) schedule(static, 1) default(shared) private(i)
     do i = 1, threads
-      call make_until_done(makers(i), interruption, runs)
+      call make_until_done(makers(i), threads, interruption, runs)
     end do
     !$omp end parallel do
   end subroutine make_in_threads
 
-  !> Make one run after the other until all are handed out. One thread at a time asks for a number and gives its run back.
-  subroutine make_until_done(maker, interruption, runs)
+  !> Make one run after the other, or as many at once as the maker can, until all are handed out. One thread at a time asks for numbers
+  !> and gives its runs back.
+  subroutine make_until_done(maker, threads, interruption, runs)
     type(run_maker_type), intent(inout) :: maker   !< of this thread
+    integer, intent(in) :: threads                 !< how many there are
     class(interruption_type), intent(in) :: interruption   !< is copied
     type(study_runs_type), intent(inout) :: runs   !< of all threads
-    type(made_run_type) :: run
+    type(made_run_type) :: made(most_runs)
     class(interruption_type), allocatable :: of_run
-    integer :: number
+    integer :: numbers(most_runs), count, number, i
 
     allocate (of_run, source=interruption)
+    count = 0
     do
       !$omp critical (runs_of_study)
-      if (run%number > 0) call runs%take(run)
-      number = runs%hand_out()
+      do i = 1, count
+        call runs%take(made(i))
+      end do
+      ! each thread has its share of the last runs
+      count = 0
+      do i = 1, min(maker%at_once(), 1 + runs%left()/threads)
+        number = runs%hand_out()
+        if (number == all_handed_out .or. number == wait_for_others) exit
+        count = count + 1
+        numbers(count) = number
+      end do
       !$omp end critical (runs_of_study)
-      run%number = 0
-      if (number == all_handed_out) exit
-      if (number == wait_for_others) then
-        call pause_for(short_wait)
+      if (count > 0) then
+        call maker%make_several(numbers(:count), made(:count), of_run)
+      else if (number == all_handed_out) then
+        exit
       else
-        call maker%make(number, run, of_run)
+        call pause_for(short_wait)
       end if
     end do
   end subroutine make_until_done

@@ -5,10 +5,10 @@ A module of the project is known by its file's `module` statement.
 import os
 import re
 
-from mech9_cases import TREE
+from mech9_cases import TREE, text_of
 
 FLOORS = ['base', 'system', 'numerics', 'numerics/minima', 'numerics/continuation', 'spatial', 'structure', 'model/couplings', 'model/laws', 'model/loads', 'model/request', 'model',
-          'sampling', 'user', 'kinematics/plan', 'kinematics/motion', 'kinematics/assembly', 'kinematics/planning', 'kinematics/tracking',
+          'sampling', 'user', 'kinematics/plan', 'kinematics/motion', 'kinematics/assembly', 'kinematics/planning', 'kinematics/tracking', 'kinematics/lanes',
           'ode', 'dynamics', 'dynamics/planning', 'dynamics/variations', 'analyses/sensitivity', 'dynamics/sensitivity', 'reactions', 'simulation/integration',
           'simulation/events', 'simulation',
           'analyses/equilibrium', 'analyses/continuation', 'analyses/planar_runs', 'analyses', 'wording', 'runs', 'runs/long_term', 'studies', 'synthesis', 'input/document', 'input', 'drafts', 'input/checks', 'searches', 'output/layout', 'output', 'interchange/xml', 'interchange', 'reports',
@@ -17,6 +17,7 @@ FLOORS = ['base', 'system', 'numerics', 'numerics/minima', 'numerics/continuatio
           'dialogue/questions',
           'dialogue',
           'programs/mpi', 'programs']
+INCLUDED = re.compile(r"^ *include '([^']+)' *$", re.M)
 WITHOUT_WORDS = ('numerics', 'spatial', 'kinematics/', 'ode', 'dynamics', 'reactions', 'simulation', 'analyses/', 'synthesis')   # they fail with numbers, see src/wording
 MODULE = re.compile(r'^\s*module\s+(?!procedure\b|subroutine\b|function\b)(\w+)\s*$', re.I | re.M)
 USE = re.compile(r'^\s*use\b\s*(?:,\s*(?:non_)?intrinsic\s*)?(?:::)?\s*([\w@]+)\s*(,\s*only\s*:)?', re.I | re.M)
@@ -33,6 +34,11 @@ def sources(folder='src'):
                 path = os.path.join(where, name)
                 with open(path, encoding='utf-8') as file:
                     yield os.path.relpath(where, source_folder).replace(os.sep, '/'), path, file.read()
+
+
+def with_included(path, text):
+    """The text of a file with those that it includes in their places."""
+    return INCLUDED.sub(lambda found: text_of(os.path.join(os.path.dirname(path), found.group(1))), text)
 
 
 def used_modules(text):

@@ -97,7 +97,9 @@ def test_grid(cases, mech9k):
         code, found = cases.single(mech9k, GRID, (rows['crank'][i], rows['rod'][i]))
         check.true(code == rows['exit_code'][i], f'grid: run {i + 1} ends as alone', code)
         if code == DONE:
-            check.true(found == [rows['stroke'][i], rows['late'][i]], f'grid: run {i + 1} has the bits of a single run', found)
+            # positions side by side and alone differ by round-off, and late corrections of either are squares of 1e-9
+            check.true(np.allclose(found, [rows['stroke'][i], rows['late'][i]], rtol=1e-13, atol=1e-14),
+                       f'grid: run {i + 1} has the numbers of a single run', found)
 
 
 def test_list(cases, mech9k):

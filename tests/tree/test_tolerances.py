@@ -2,6 +2,7 @@
 import os
 import re
 
+from floors import with_included
 from mech9_cases import TREE
 
 SHARED = os.path.join(TREE, 'src', 'kinematics', 'plan', 'tolerances.f90')
@@ -23,7 +24,7 @@ def test_tolerances_have_reasons_and_are_used(checks, sources):
     code = {}
     for floor, path, text in sources:
         if not is_home(path):
-            code[floor] = code.get(floor, '') + code_of(text)
+            code[floor] = code.get(floor, '') + code_of(with_included(path, text))
     names = []
     for floor, path, text in homes:
         users = ''.join(code.values()) + code_of(text).split('\ncontains\n')[-1] if path == SHARED else code[floor]

@@ -1,0 +1,67 @@
+!> The motion of designs side by side, by the widest instructions that the processor has. All of them give the same bits.
+module mech9_lane_motion
+  use mech9_kinds, only: wp
+  use mech9_lane_group, only: lane_group_type, lanes
+  use mech9_lane_motion_sse2, only: begin_sse2 => begin_in_lanes, go_on_sse2 => go_on_in_lanes, point_sse2 => point_in_lanes
+  use mech9_lane_motion_avx2, only: begin_avx2 => begin_in_lanes, go_on_avx2 => go_on_in_lanes, point_avx2 => point_in_lanes
+  use mech9_lane_motion_avx512, only: begin_avx512 => begin_in_lanes, go_on_avx512 => go_on_in_lanes, &
+    point_avx512 => point_in_lanes
+  implicit none
+  private
+  public :: begin_group, go_on_with_group, find_point
+
+contains
+
+  !> Begin at the closed positions of the designs: find their rates and accelerations.
+  pure subroutine begin_group(bits, group)
+    integer, intent(in) :: bits                     !< of the vector registers that are used: 512, 256, or any others
+    type(lane_group_type), intent(inout) :: group   !< with coordinates, and the motion of the given ones
+
+    select case (bits)
+    case (512)
+      call begin_avx512(group)
+    case (256)
+      call begin_avx2(group)
+    case default
+      call begin_sse2(group)
+    end select
+  end subroutine begin_group
+
+  !> Go on by a step on the same branch. `refused` is raised in lanes where the branch stepper would not accept the step at once.
+  pure subroutine go_on_with_group(bits, h, group)
+    integer, intent(in) :: bits                     !< of the vector registers that are used: 512, 256, or any others
+    real(wp), intent(in) :: h                       !< length of the step [s]
+    type(lane_group_type), intent(inout) :: group   !< with the motion of the given coordinates at its end
+
+    select case (bits)
+    case (512)
+      call go_on_avx512(h, group)
+    case (256)
+      call go_on_avx2(h, group)
+    case default
+      call go_on_sse2(h, group)
+    end select
+  end subroutine go_on_with_group
+
+  !> A component of the motion of a point of a link.
+  pure subroutine find_point(bits, group, frame, place, axis, origin, motion)
+    integer, intent(in) :: bits                      !< of the vector registers that are used: 512, 256, or any others
+    type(lane_group_type), intent(in) :: group       !< with the motion of its frames
+    integer, intent(in) :: frame                     !< the link's first frame
+    real(wp), intent(in) :: place(lanes, 3)          !< the point in the frame [m]
+    real(wp), intent(in) :: axis(lanes, 3)           !< components of the direction in the plane's axes
+    real(wp), intent(in) :: origin(lanes)            !< component of the origin of frame 0 [m]
+    real(wp), intent(inout) :: motion(lanes, 0:2)    !< gets the component of position, velocity and acceleration [m, m/s, m/s^2]
+
+    associate (pose => group%pose(:, :, frame), v => group%v(:, :, frame), a => group%a(:, :, frame))
+      select case (bits)
+      case (512)
+        call point_avx512(pose, v, a, place, axis, origin, motion)
+      case (256)
+        call point_avx2(pose, v, a, place, axis, origin, motion)
+      case default
+        call point_sse2(pose, v, a, place, axis, origin, motion)
+      end select
+    end associate
+  end subroutine find_point
+end module mech9_lane_motion
