@@ -2,7 +2,6 @@
 module mech9_driven_simulation
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_law, only: repetition_type, repeats_after
   use mech9_model, only: model_type
   use mech9_motion_view, only: motion_view_type
   use mech9_plan, only: plan_type, copy_plan
@@ -10,6 +9,7 @@ module mech9_driven_simulation
   use mech9_start_path, only: start_way_type, assemble_start
   use mech9_requested, only: requested_by_results, add_forces, add_stops, add_section, leave_out_unrequested
   use mech9_driven_motion, only: driven_motion_type, set_inputs
+  use mech9_drive_ways, only: short_ways_type, end_of_way
   use mech9_driven_counts, only: driven_counts_type, keep_counts, return_to_counts
   use mech9_batch_products, only: batch_size
   use mech9_ball_angles, only: ball_angles_type
@@ -35,6 +35,8 @@ module mech9_driven_simulation
     class(dynamics_plan_type), allocatable, private :: dynamics  !< made when energies are asked for first
     type(motion_view_type), allocatable, private :: view         !< of the present state, as loads see it
     type(stop_contacts_type), private :: contacts                !< ends of stops, with the motion at the last output
+    logical, private :: watches_ends = .false.                   !< it has rigid ends, which it must not pass
+    type(short_ways_type), private :: unseen                     !< ways between looks at rigid ends
     class(driven_frictions_type), allocatable :: frictions       !< not allocated: there are none, or no forces are requested
     type(driven_counts_type), private :: kept_work(batch_size)   !< of positions that wait for their derivatives
   contains
@@ -52,13 +54,10 @@ module mech9_driven_simulation
     procedure :: return_to_work
   end type driven_simulation_type
 
-  !> Longest way of a drive within a stride, in the unit of its coordinate, and halvings of a longer one.
+  !> Longest way of a drive within a stride, in the unit of its coordinate.
   real(wp), parameter :: longest_way = 0.1_wp
-  !> Longest way of a drive between two looks at the gaps of stops and contacts.
+  !> Longest way of a drive between two looks at the gaps of stops and contacts, in the unit of its coordinate.
   real(wp), parameter :: longest_unseen = 0.25_wp
-  integer, parameter :: most_halvings = 60
-  !> A way is at most this part of the period of a drive, which may be far smaller than the unit of its coordinate.
-  real(wp), parameter :: part_of_period = 0.125_wp
 
 contains
 
@@ -114,7 +113,9 @@ contains
     call begin_with_angles(self%model, self%requested, self%plan, start, self%driven, self%angles, err)
     if (allocated(err)) return
     call find_contacts(self%model%mechanism, self%contacts)
-    if (self%model%mechanism%has_rigid_ends()) then
+    self%watches_ends = self%model%mechanism%has_rigid_ends()
+    self%unseen = short_ways_type(longest_unseen)
+    if (self%watches_ends) then
       call self%contacts%note(self%model%mechanism, self%plan, self%driven%state)
       call check_stops(self%model, self%plan, self%angles%held%drives, self%driven, t, self%contacts, err)
     end if
@@ -132,7 +133,7 @@ contains
     do
       before = self%driven%state%t
       next = t
-      if (self%model%mechanism%has_rigid_ends()) next = end_of_way(self, before, t, longest_unseen)
+      if (self%watches_ends) next = self%unseen%end_of_next(self%model%problem%drives, self%plan, before, t)
       do
         call advance_with_angles(self%model, self%plan, next, self%driven, self%angles, reached, err)
         if (allocated(err)) return
@@ -141,7 +142,7 @@ contains
         if (allocated(err)) return
         if (reached) exit
       end do
-      if (self%model%mechanism%has_rigid_ends()) &
+      if (self%watches_ends) &
         call check_stops(self%model, self%plan, self%angles%held%drives, self%driven, before, self%contacts, err)
       if (allocated(err) .or. .not. abs(t - next) > 0.0_wp) exit
     end do
@@ -160,53 +161,11 @@ contains
 
     at_joint = .false.
     from = to
-    next = end_of_way(self, from, t, longest_way)
+    next = end_of_way(self%model%problem%drives, self%plan, longest_way, from, t)
     call self%stop_if_interrupted(next, err)
     if (.not. allocated(err)) call self%go_to(next, err)
     if (.not. allocated(err)) to = next
   end subroutine stride
-
-  !> The end of a way towards a time, on which no drive moves farther than a given way, turns back twice, or passes a joint of its law.
-  real(wp) function end_of_way(self, from, t, longest) result(next)
-    class(driven_simulation_type), intent(in) :: self      !< the simulation
-    real(wp), intent(in) :: from                           !< start of the way [s]
-    real(wp), intent(in) :: t                              !< the time [s]
-    real(wp), intent(in) :: longest                        !< longest way [rad, m]
-    type(repetition_type) :: repetition
-    real(wp) :: h, joint
-    integer :: halving, i
-
-    h = t - from
-    next = t
-    do i = 1, size(self%model%problem%drives)
-      associate (drive => self%model%problem%drives(i)%drive)
-        repetition = drive%repetition()
-        if (repetition%kind == repeats_after) h = sign(min(abs(h), part_of_period*repetition%period), h)
-        joint = drive%next_joint(from, sign(1.0_wp, h)) - from
-        if (abs(joint) < abs(h)) h = joint
-      end associate
-    end do
-    do halving = 1, most_halvings
-      if (farthest_way(self, from, h) <= longest) exit
-      h = 0.5_wp*h
-    end do
-    if (abs(h) < abs(t - from) .and. abs(from + h - from) > 0.0_wp) next = from + h
-  end function end_of_way
-
-  !> A bound of the way of all drives within a time, in the units of their coordinates.
-  real(wp) function farthest_way(self, from, h) result(way)
-    class(driven_simulation_type), intent(in) :: self      !< the simulation
-    real(wp), intent(in) :: from                           !< start of the time [s]
-    real(wp), intent(in) :: h                              !< its length [s]
-    integer :: i
-
-    way = 0.0_wp
-    do i = 1, size(self%model%problem%drives)
-      associate (drive => self%model%problem%drives(i)%drive)
-        way = max(way, abs(h)*drive%greatest_rate(from, h)/self%plan%unit_of(drive%coordinate))
-      end associate
-    end do
-  end function farthest_way
 
   !> Find the frictions at the present time.
   subroutine find_frictions(self, err)

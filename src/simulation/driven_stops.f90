@@ -34,14 +34,20 @@ contains
     real(wp), intent(in) :: before                         !< time of the last output; the present one at the start [s]
     type(stop_contacts_type), intent(inout) :: contacts    !< the ends, with the motion at the last output; then at the present one
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
-    real(wp) :: h, t_passed, t_behind, t_first, t_told, soonest
-    integer :: i, first
-    logical :: passed
+    real(wp) :: h
 
     h = driven%state%t - before
-    first = 0
-    soonest = huge(soonest)
-    if (contacts%in_doubt(model%mechanism, plan, driven%state, h)) then
+    if (contacts%in_doubt(model%mechanism, plan, driven%state, h)) call search()
+    call contacts%note_gaps(model%mechanism, plan, driven%state)
+  contains
+    !> Search for the first passing of any end since the last output, and fail there.
+    subroutine search()
+      real(wp) :: t_passed, t_behind, t_first, t_told, soonest
+      integer :: i, first
+      logical :: passed
+
+      first = 0
+      soonest = huge(soonest)
       do i = 1, size(contacts%ends)
         if (.not. contacts%ends(i)%is_rigid) cycle
         call find_passing(i, passed, t_passed, t_behind)
@@ -52,10 +58,9 @@ contains
         t_first = t_passed
         t_told = t_behind
       end do
-    end if
-    if (first > 0) call fail(first, t_first, t_told)
-    call contacts%note(model%mechanism, plan, driven%state)
-  contains
+      if (first > 0) call fail(first, t_first, t_told)
+    end subroutine search
+
     !> Find the first passing of an end since the last output: a time at which the gap is clearly below zero, and by bisection from there
     !> that at which it is zero.
     subroutine find_passing(i, passed, t_passed, t_behind)

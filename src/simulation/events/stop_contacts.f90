@@ -44,6 +44,7 @@ module mech9_stop_contacts
     real(wp), allocatable :: rate(:)     !< (ends) their rates there, those of the last evaluation before it [rad/s, m/s]
     type(contact_place_type), allocatable :: place(:)   !< (ends) those of contacts of links there
     real(wp), allocatable :: force(:)    !< (ends) forces of those that are held there, positive while they push [N m, N]
+    integer :: n_stops = 0               !< how many of the ends belong to stops; those of contacts of links stand behind them
     integer :: behind = 0                !< number of the end whose curve the ball is behind at the event that lies ahead; 0: none
     integer :: corrections = 0           !< how often the time of the event that lies ahead was corrected
   contains
@@ -51,6 +52,7 @@ module mech9_stop_contacts
     procedure :: show_pressed
     procedure :: any_held
     procedure :: held_coordinates
+    procedure :: note_gaps
     procedure :: in_doubt
   end type stop_contacts_type
 
@@ -186,6 +188,7 @@ contains
         end associate
       end do
     end do
+    contacts%n_stops = n
     do i = 1, n_links
       contacts%ends(n + i) = stop_contact_type(contact=i, of_group=mechanism%contacts(i)%number, &
                                                restitution=mechanism%contacts(i)%restitution, &
@@ -199,14 +202,10 @@ contains
     type(mechanism_type), intent(in) :: mechanism      !< the mechanism
     type(plan_type), intent(in) :: plan                !< its plan
     type(state_type), intent(in) :: state              !< the state there; rates of dependent coordinates may be a little older
-    type(gap_look_type) :: look
     integer :: i
 
+    call self%note_gaps(mechanism, plan, state)
     do i = 1, size(self%ends)
-      look = look_at_gap(mechanism, plan, state, self%ends(i))
-      self%gap(i) = look%gap
-      self%rate(i) = look%rate
-      self%place(i) = look%place
       self%force(i) = pushing_force(mechanism, plan, state, self%ends(i))
     end do
   end subroutine note
@@ -278,22 +277,95 @@ contains
     type(state_type), intent(in) :: state           !< positions at the end of the step, with the rates of the last evaluation
     real(wp), intent(in) :: h                       !< length of the step, with its sign [s]
     type(gap_look_type) :: now
-    real(wp) :: values(4)
     integer :: i
 
-    in_doubt = .true.
-    do i = 1, size(self%ends)
-      associate (end => self%ends(i))
-        if (end%held) cycle
-        ! the polynomial at the ends of the step and where its control points lie: it does not leave their hull
-        now = look_at_gap(mechanism, plan, state, end)
-        values = [self%gap(i), self%gap(i) + h*self%rate(i)/3.0_wp, now%gap - h*now%rate/3.0_wp, now%gap]
-        if (end%closed) values = -values
-        if (minval(values) < doubtful_part*(maxval(values) - minval(values)) + 1.0e-9_wp*end%unit(plan)) return
-        if (end%is_stop()) cycle
-        if (.not. mechanism%contacts(end%contact)%is_smooth_between(self%place(i), now%place, h)) return
-      end associate
+    in_doubt = stop_in_doubt(self%n_stops, self%ends, self%gap, self%rate, state%q, state%dq, plan%unit_of, h)
+    do i = self%n_stops + 1, size(self%ends)
+      if (in_doubt) return
+      if (self%ends(i)%held) cycle
+      now = look_at_gap(mechanism, plan, state, self%ends(i))
+      in_doubt = .not. is_far(self%gap(i), self%rate(i), now%gap, now%rate, h, plan%length, self%ends(i)%closed)
+      if (.not. in_doubt) &
+        in_doubt = .not. mechanism%contacts(self%ends(i)%contact)%is_smooth_between(self%place(i), now%place, h)
     end do
-    in_doubt = .false.
   end function in_doubt
+
+  !> Note the motion from which the next step begins, without forces.
+  pure subroutine note_gaps(self, mechanism, plan, state)
+    class(stop_contacts_type), intent(inout) :: self   !< the ends
+    type(mechanism_type), intent(in) :: mechanism      !< the mechanism
+    type(plan_type), intent(in) :: plan                !< its plan
+    type(state_type), intent(in) :: state              !< the state there; rates of dependent coordinates may be a little older
+    type(gap_look_type) :: look
+    integer :: i
+
+    call note_stops(self%n_stops, self%ends, state%q, state%dq, self%gap, self%rate)
+    do i = self%n_stops + 1, size(self%ends)
+      look = look_at_gap(mechanism, plan, state, self%ends(i))
+      self%gap(i) = look%gap
+      self%rate(i) = look%rate
+      self%place(i) = look%place
+    end do
+  end subroutine note_gaps
+
+  !> Note the gaps of ends of stops. The shapes are explicit, so that the loop needs no strides.
+  pure subroutine note_stops(n, ends, q, dq, gap, rate)
+    integer, intent(in) :: n                         !< number of the ends
+    type(stop_contact_type), intent(in) :: ends(n)   !< the ends
+    real(wp), intent(in) :: q(*)                     !< (M) coordinates [rad, m]
+    real(wp), intent(in) :: dq(*)                    !< (M) their rates [rad/s, m/s]
+    real(wp), intent(inout) :: gap(n)                !< gets the gaps [rad, m]
+    real(wp), intent(inout) :: rate(n)               !< gets their rates [rad/s, m/s]
+    integer :: i
+
+    do i = 1, n
+      gap(i) = ends(i)%direction*(q(ends(i)%coordinate) - ends(i)%limit)
+      rate(i) = ends(i)%direction*dq(ends(i)%coordinate)
+    end do
+  end subroutine note_stops
+
+  !> Whether an end of a stop that is not held may have been passed within a step.
+  pure logical function stop_in_doubt(n, ends, gap, rate, q, dq, unit, h) result(in_doubt)
+    integer, intent(in) :: n                         !< number of the ends
+    type(stop_contact_type), intent(in) :: ends(n)   !< the ends
+    real(wp), intent(in) :: gap(n)                   !< gaps at the start of the step [rad, m]
+    real(wp), intent(in) :: rate(n)                  !< their rates there [rad/s, m/s]
+    real(wp), intent(in) :: q(*)                     !< (M) coordinates at the end of the step [rad, m]
+    real(wp), intent(in) :: dq(*)                    !< (M) their rates [rad/s, m/s]
+    real(wp), intent(in) :: unit(*)                  !< (M) units in which coordinates count [rad, m]
+    real(wp), intent(in) :: h                        !< length of the step, with its sign [s]
+    integer :: i, c
+
+    in_doubt = .false.
+    do i = 1, n
+      c = ends(i)%coordinate
+      if (ends(i)%held) cycle
+      in_doubt = .not. is_far(gap(i), rate(i), ends(i)%direction*(q(c) - ends(i)%limit), ends(i)%direction*dq(c), h, unit(c), &
+                              ends(i)%closed)
+      if (in_doubt) return
+    end do
+  end function stop_in_doubt
+
+  !> Whether a gap surely kept its sign within a step: the control points of the polynomial through the ends of the step lie far from zero,
+  !> and it does not leave their hull.
+  pure logical function is_far(gap, rate, gap_now, rate_now, h, unit, closed)
+    real(wp), intent(in) :: gap        !< the gap at the start of the step [rad, m]
+    real(wp), intent(in) :: rate       !< its rate there [rad/s, m/s]
+    real(wp), intent(in) :: gap_now    !< the gap at the end of the step [rad, m]
+    real(wp), intent(in) :: rate_now   !< its rate there [rad/s, m/s]
+    real(wp), intent(in) :: h          !< length of the step, with its sign [s]
+    real(wp), intent(in) :: unit       !< unit in which the gap counts [rad, m]
+    logical, intent(in) :: closed      !< the end is closed: the gap is below zero
+    real(wp) :: first, last, least, greatest
+
+    first = gap + h*rate/3.0_wp
+    last = gap_now - h*rate_now/3.0_wp
+    least = min(gap, first, last, gap_now)
+    greatest = max(gap, first, last, gap_now)
+    if (closed) then
+      is_far = -greatest >= doubtful_part*(greatest - least) + 1.0e-9_wp*unit
+    else
+      is_far = least >= doubtful_part*(greatest - least) + 1.0e-9_wp*unit
+    end if
+  end function is_far
 end module mech9_stop_contacts
