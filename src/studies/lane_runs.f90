@@ -19,7 +19,7 @@ module mech9_lane_runs
   use mech9_smooth_pieces, only: have_joints
   use mech9_chebyshev, only: chebyshev_type, new_chebyshev
   use mech9_simulation, only: interruption_type
-  use mech9_driven_simulation, only: assemble_driven
+  use mech9_explained_assembly, only: assemble_model
   use mech9_tracked_quantity, only: tracked_quantity_type
   use mech9_quantity_record, only: quantity_record_type
   use mech9_quantity_pieces, only: points_between
@@ -29,7 +29,12 @@ module mech9_lane_runs
   use mech9_lane_motion, only: begin_group, go_on_with_group, find_point
   implicit none
   private
-  public :: lane_runs_type
+  public :: lane_runs_type, lane_failure_type
+
+  !> The failure of a design that could not be assembled.
+  type :: lane_failure_type
+    type(error_type), allocatable :: err   !< not allocated: it did not fail in this way
+  end type lane_failure_type
 
   !> The source of the column of a quantity.
   type :: column_source_type
@@ -92,7 +97,7 @@ contains
     allocate (self%model, source=model)
     self%requested = requested_by_results(model%mechanism, model%request%output)
     ! the structure of the data file's own design: which others are followed side by side must not depend on their order
-    call assemble_driven(model, plan, state, err)
+    call assemble_model(model, plan, state, err)
     if (allocated(err)) return
     call leave_out_unrequested(plan, self%requested)
     if (.not. fits_lanes(plan)) return
@@ -151,18 +156,19 @@ contains
     end associate
   end subroutine find_source
 
-  !> Make runs side by side, at most as many as there are lanes. A run that is not `done` is to be made alone.
-  subroutine make(self, models, numbers, done, interruption)
+  !> Make runs side by side, at most as many as there are lanes. A run that is neither `done` nor has a failure is to be made alone.
+  subroutine make(self, models, numbers, done, failures, interruption)
     class(lane_runs_type), intent(inout) :: self        !< prepared
     type(model_type), intent(in), target :: models(:)   !< (runs) the models
     real(wp), intent(inout) :: numbers(:, :)            !< (quantities,runs) get the quantities of runs that are done
     logical, intent(inout) :: done(:)                   !< (runs) the model is of use in; the run is made out
+    type(lane_failure_type), intent(out) :: failures(:) !< (runs) of designs that a run alone could not assemble either
     class(interruption_type), intent(inout), optional :: interruption   !< is asked whether the runs shall stop
     type(tracked_quantity_type) :: tracked
     integer :: i, l
 
     do l = 1, size(models)
-      if (done(l)) call assemble_lane(self, models(l), l, done(l))
+      if (done(l)) call assemble_lane(self, models(l), l, done(l), failures(l)%err)
     end do
     if (any(done)) call follow_group(self, models, done, interruption)
     do l = 1, size(models)
@@ -177,14 +183,14 @@ contains
   end subroutine make
 
   !> Assemble a design and give it to a lane.
-  subroutine assemble_lane(self, model, lane, fits)
+  subroutine assemble_lane(self, model, lane, fits, err)
     type(lane_runs_type), intent(inout) :: self      !< prepared
     type(model_type), intent(in) :: model            !< the model of the design
     integer, intent(in) :: lane                      !< number of the lane
     logical, intent(out) :: fits                     !< the lane has the design
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it can't be assembled
     type(plan_type) :: plan
     type(state_type) :: state
-    type(error_type), allocatable :: err
     integer :: i
 
     fits = is_simple(model)
@@ -193,7 +199,7 @@ contains
       fits = time%intervals == base%intervals .and. .not. max(abs(time%start - base%start), abs(time%end - base%end)) > 0.0_wp
     end associate
     if (.not. fits) return
-    call assemble_driven(model, plan, state, err)
+    call assemble_model(model, plan, state, err)
     fits = .not. allocated(err)
     if (.not. fits) return
     call leave_out_unrequested(plan, self%requested)

@@ -17,7 +17,7 @@ module mech9_run_maker
   use mech9_end_class, only: find_cycle, find_rest
   use mech9_pair_axes, only: pair_axes_type, pair_axes, turning
   use mech9_lane_group, only: lanes
-  use mech9_lane_runs, only: lane_runs_type
+  use mech9_lane_runs, only: lane_runs_type, lane_failure_type
   implicit none
   private
   public :: made_run_type, run_maker_type, most_runs
@@ -150,9 +150,10 @@ contains
     class(run_maker_type), intent(inout) :: self       !< the maker
     integer, intent(in) :: numbers(:)                  !< of the runs in the whole study, from 1
     type(made_run_type), intent(inout) :: runs(:)      !< get the runs that are made
-    logical, intent(out) :: done(:)                    !< the run is made
+    logical, intent(out) :: done(:)                    !< the run is made, or has failed
     class(interruption_type), intent(inout), optional :: interruption   !< is asked whether the runs shall stop
     type(model_type), allocatable :: models(:)
+    type(lane_failure_type) :: failures(size(numbers))
     type(error_type), allocatable :: err
     real(wp) :: values(size(self%parameters), size(numbers)), quantities(self%n_quantities, size(numbers))
     integer :: i
@@ -164,10 +165,15 @@ contains
       call self%varied%at(values(:, i), models(i), err)
       done(i) = .not. allocated(err)
     end do
-    call self%side_by_side%make(models, quantities, done, interruption)
+    call self%side_by_side%make(models, quantities, done, failures, interruption)
     do i = 1, size(numbers)
-      if (.not. done(i)) cycle
+      if (allocated(failures(i)%err)) quantities(:, i) = ieee_value(1.0_wp, ieee_quiet_nan)
+      if (.not. (done(i) .or. allocated(failures(i)%err))) cycle
       call take_made(numbers(i), values(:, i), quantities(:, i), runs(i))
+      if (done(i)) cycle
+      runs(i)%exit_code = failures(i)%err%code
+      call move_alloc(failures(i)%err, runs(i)%failure)
+      done(i) = .true.
     end do
   end subroutine make_side_by_side
 
