@@ -151,17 +151,17 @@ contains
   end subroutine print_mobility_of
 
   !> Read the structure of a document, and write it; nothing where it has errors. The names of the vectors go to another unit.
-  subroutine print_structure_of(unit, names_unit, document, diagnostics)
+  subroutine print_structure_of(unit, document, diagnostics, names_unit)
     integer, intent(in) :: unit                             !< Fortran unit to write to
-    integer, intent(in) :: names_unit                       !< Fortran unit for the names; 0: they are not written
     type(document_type), intent(in) :: document             !< the data file as groups and items
     type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
+    integer, intent(in), optional :: names_unit             !< Fortran unit for the names; they are not written unless it is given
     type(structure_type) :: structure
     type(partition_type) :: partition
 
     call read_structure_only(document, structure, partition, diagnostics)
     if (diagnostics%failed()) return
-    if (names_unit /= 0) call print_names_of_vectors(names_unit, diagnostics%names)
+    if (present(names_unit)) call print_names_of_vectors(names_unit, diagnostics%names)
     call print_structure(unit, structure, partition%vectors)
   end subroutine print_structure_of
 

@@ -120,8 +120,12 @@ contains
     ! of several processes the first one writes the report
     reported = .not. processes%is_first
     if (options%has('structure')) then
-      if (.not. options%has('quiet')) call print_unused_options(error_unit, options, model)
-      call print_structure_of(output_unit, merge(0, error_unit, options%has('quiet')), document, diagnostics)
+      if (options%has('quiet')) then
+        call print_structure_of(output_unit, document, diagnostics)
+      else
+        call print_unused_options(error_unit, options, model)
+        call print_structure_of(output_unit, document, diagnostics, names_unit=error_unit)
+      end if
     else
       legible = .not. diagnostics%failed()
       call read_model(document, options%program, model, diagnostics)

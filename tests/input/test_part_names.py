@@ -190,7 +190,7 @@ def heading_of(path):
 
 def test_names_in_other_tables_and_plots(checks, mech9d, tmp_path):
     """Columns of sections, equilibria, modes and branches by the names of pairs, also in requests for plots, whose labels have them."""
-    section = SWING + "&section column='hip.dq', value=0, table='section.dat' /\n"
+    section = SWING + "&section column='hip.dq', value=0.1, table='section.dat' /\n"
     done = run(mech9d, write(tmp_path, section), '--quiet', '--names', '--table', 'run.dat', '--plot', 'run.svg:hip.q', '--plot', 'points.svg:section:hip.q',
                folder=tmp_path)
     checks.equal(done.returncode, DONE, done.stderr)

@@ -77,14 +77,34 @@ def rubbing(text, numbers):
     return text.replace('restitution=', f'{numbers}, restitution=') + "&parameter name='mu', sets='contact(1).friction' /\n"
 
 
+#: A ball that turns and falls on a larger one beside its top: the normal turns with the point of contact.
+BALLS = """&structure cq=1,2,3 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&pair coordinate=2, links=2,3, kind='prismatic', axis=0,0,1 /
+&pair coordinate=3, links=3,4, kind='revolute', axis=0,1,0 /
+&body link=4, mass=2, inertia=0.02,0.03,0.02,0,0,0 /
+&gravity acceleration=0,0,-9.81 /
+&point name='F', link=4, position=0,0,0 /
+&contact point='F', kind='sphere', origin=0.1,0,0, radius=0.1, other_radius=0.3, friction=0.9, restitution=0.6 /
+&initial coordinate=1, position=0, velocity=0.3 /
+&initial coordinate=2, position=0.6 /
+&initial coordinate=3, position=0, velocity=1 /
+&parameter name='m', sets='body(1).mass' /
+&parameter name='x', sets='initial(1).position' /
+&parameter name='R', sets='contact(1).other_radius' /
+&parameter name='mu', sets='contact(1).friction' /
+"""
+
+
 @pytest.mark.parametrize('text, columns, end, found', [
     (rubbing(ROCKER, 'friction=0.1'), ('q1', 'dq1', 'q4', 'dq4'), 0.7, ('impact', 1)),
     (rubbing(ROCKER, 'friction=0.4'), ('q1', 'dq1', 'q4', 'dq4'), 0.7, ('impact', 1)),
     (rubbing(SKEW, 'friction=0.05'), ('q1', 'dq1', 'q2', 'dq2', 'q3', 'dq3'), 0.6, ('impact', 1)),
-    (rubbing(SKEW, 'friction=0.8'), ('q1', 'dq1', 'q2', 'dq2', 'q3', 'dq3'), 0.6, ('impact', 1))],
-    ids=['chain slides', 'chain sticks', 'space slides', 'space sticks'])
+    (rubbing(SKEW, 'friction=0.8'), ('q1', 'dq1', 'q2', 'dq2', 'q3', 'dq3'), 0.6, ('impact', 1)),
+    (BALLS, ('q1', 'dq1', 'q2', 'dq2', 'q3', 'dq3'), 0.4, ('impact', 1))],
+    ids=['chain slides', 'chain sticks', 'space at 0.05', 'space at 0.8', 'ball on ball'])
 def test_several_coordinates(checks, mech9d, tmp_path, text, columns, end, found):
-    """A rocker of a closed chain that hits a ball, and a double pendulum in space that hits a plane of a link that swings."""
+    """A rocker of a closed chain that hits a ball, a double pendulum in space that hits a plane of a link that swings, and two balls."""
     # tolerance: the error of differences, which impacts make larger
     report = against_differences(checks, mech9d, tmp_path, text, columns, end, 6, tol=1e-6)
     checks.true(found in kinds(report), 'the event of the case', kinds(report))

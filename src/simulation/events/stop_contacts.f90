@@ -279,7 +279,7 @@ contains
     type(gap_look_type) :: now
     integer :: i
 
-    in_doubt = stop_in_doubt(self%n_stops, self%ends, self%gap, self%rate, state%q, state%dq, plan%unit_of, h)
+    in_doubt = stop_in_doubt(self, state%q, state%dq, plan%unit_of, h)
     do i = self%n_stops + 1, size(self%ends)
       if (in_doubt) return
       if (self%ends(i)%held) cycle
@@ -325,23 +325,22 @@ contains
   end subroutine note_stops
 
   !> Whether an end of a stop that is not held may have been passed within a step.
-  pure logical function stop_in_doubt(n, ends, gap, rate, q, dq, unit, h) result(in_doubt)
-    integer, intent(in) :: n                         !< number of the ends
-    type(stop_contact_type), intent(in) :: ends(n)   !< the ends
-    real(wp), intent(in) :: gap(n)                   !< gaps at the start of the step [rad, m]
-    real(wp), intent(in) :: rate(n)                  !< their rates there [rad/s, m/s]
-    real(wp), intent(in) :: q(*)                     !< (M) coordinates at the end of the step [rad, m]
-    real(wp), intent(in) :: dq(*)                    !< (M) their rates [rad/s, m/s]
-    real(wp), intent(in) :: unit(*)                  !< (M) units in which coordinates count [rad, m]
-    real(wp), intent(in) :: h                        !< length of the step, with its sign [s]
+  pure logical function stop_in_doubt(contacts, q, dq, unit, h) result(in_doubt)
+    type(stop_contacts_type), intent(in) :: contacts   !< the ends, with the motion at the start of the step
+    real(wp), intent(in) :: q(*)                       !< (M) coordinates at the end of the step [rad, m]
+    real(wp), intent(in) :: dq(*)                      !< (M) their rates [rad/s, m/s]
+    real(wp), intent(in) :: unit(*)                    !< (M) units in which coordinates count [rad, m]
+    real(wp), intent(in) :: h                          !< length of the step, with its sign [s]
     integer :: i, c
 
     in_doubt = .false.
-    do i = 1, n
-      c = ends(i)%coordinate
-      if (ends(i)%held) cycle
-      in_doubt = .not. is_far(gap(i), rate(i), ends(i)%direction*(q(c) - ends(i)%limit), ends(i)%direction*dq(c), h, unit(c), &
-                              ends(i)%closed)
+    do i = 1, contacts%n_stops
+      associate (end => contacts%ends(i))
+        if (end%held) cycle
+        c = end%coordinate
+        in_doubt = .not. is_far(contacts%gap(i), contacts%rate(i), end%direction*(q(c) - end%limit), end%direction*dq(c), &
+                                h, unit(c), end%closed)
+      end associate
       if (in_doubt) return
     end do
   end function stop_in_doubt
