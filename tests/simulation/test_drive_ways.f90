@@ -41,7 +41,7 @@ contains
     real(wp), parameter :: lengths(4) = [0.004_wp, 0.11_wp, 0.3_wp, -0.05_wp]   ! of steps, a hundred of each [s]
     real(wp), parameter :: eighth = atan(1.0_wp)/3.0_wp   ! of the period, 2 pi/3 s
     real(wp) :: t, h, way, found
-    integer :: i
+    integer :: i, k
 
     call make_units([unit], plan)
     law%coordinate = 1
@@ -50,17 +50,19 @@ contains
     allocate (drives(1)%drive, source=law)
     ways = short_ways_type(longest)
     t = 0.0_wp
-    do i = 1, 400
-      h = lengths(1 + (i - 1)/100)
-      found = ways%end_of_next(drives, plan, t, t + h) - t
+    do k = 1, size(lengths)
+      h = lengths(k)
       way = abs(h)*law%amplitude*law%angular_frequency/unit
-      if (way <= longest .and. abs(h) <= eighth) then
-        call test%near(found, h, 1.0e-12_wp, 'a short step is one way')
-      else
-        call test%is_true(abs(found) < abs(h) .and. found*h > 0.0_wp, 'a long step is divided')
-        call test%is_true(abs(found)*law%amplitude*law%angular_frequency/unit <= longest, 'its part is a short way')
-      end if
-      t = t + h
+      do i = 1, 100
+        found = ways%end_of_next(drives, plan, t, t + h) - t
+        if (way <= longest .and. abs(h) <= eighth) then
+          call test%near(found, h, 1.0e-12_wp, 'a short step is one way')
+        else
+          call test%is_true(abs(found) < abs(h) .and. found*h > 0.0_wp, 'a long step is divided')
+          call test%is_true(abs(found)*law%amplitude*law%angular_frequency/unit <= longest, 'its part is a short way')
+        end if
+        t = t + h
+      end do
     end do
   end subroutine harmonic
 
