@@ -21,9 +21,8 @@ module mech9_optimum_results
   use mech9_synthesis, only: synthesis_type
   use mech9_starts, only: starts_type
   use mech9_starts_file, only: starts_layout_type, find_layout, read_starts
-  use mech9_optimum_group, only: write_optima
-  use mech9_design_text, only: text_of_design
-  use mech9_optimum_words, only: history_of_design
+  use mech9_optimum_layout, only: write_optima
+  use mech9_best_design, only: text_of_best
   implicit none
   private
   public :: open_results, write_results, table_of
@@ -166,22 +165,6 @@ contains
       end if
     end subroutine tell
   end subroutine write_results
-
-  !> Form the data file of the best design.
-  subroutine text_of_best(document, model, synthesis, text)
-    type(document_type), intent(in) :: document             !< the data file
-    type(model_type), intent(in) :: model                   !< the model
-    type(synthesis_type), intent(in) :: synthesis           !< with its optima, best first
-    character(len=:), allocatable, intent(out) :: text      !< of the data file
-    type(model_type) :: designed
-    type(error_type), allocatable :: err
-    character(len=:), allocatable :: history
-
-    call history_of_design(model, synthesis, history)
-    ! there is such a model, because its motion was followed
-    call synthesis%space%variable%at(synthesis%values_of(1), designed, err)
-    call text_of_design(document, designed, synthesis%values_of(1), synthesis%optima(1)%q, history, text)
-  end subroutine text_of_best
 
   !> Open the table of the distinct designs.
   subroutine open_table(path, model, table, err)

@@ -18,7 +18,10 @@ module mech9_optimum_task
   use mech9_starts, only: starts_type
   use mech9_optimum_results, only: open_results, write_results, table_of
   use mech9_optimum_pictures, only: optimum_pictures_type
-  use mech9_optimum_words, only: print_differences, print_optimum, save_optimum_report
+  use mech9_optimum_words, only: print_differences, print_optimum
+  use mech9_json, only: json_type
+  use mech9_report_parts, only: begin_report
+  use mech9_optimum_report, only: add_optimum
   implicit none
   private
   public :: work_on_optimum
@@ -38,6 +41,7 @@ contains
     type(starts_type) :: starts
     type(table_type) :: table
     type(optimum_pictures_type) :: pictures
+    type(json_type) :: json
     type(signal_interruption_type) :: interruption
     type(error_type), allocatable :: err
     real(wp) :: clock
@@ -76,7 +80,10 @@ contains
     call write_results(options, document, model, search%synthesis, starts, table, diagnostics)
     call pictures%draw(options, variable, search%synthesis, diagnostics)
     if (.not. options%has('report')) return
-    call save_optimum_report(options%argument('report'), model, search%synthesis, table_of(options, model), diagnostics, err)
+    call begin_report(json, model, diagnostics, table_of(options, model))
+    call add_optimum(json, model, search%synthesis)
+    call json%end_object()
+    call json%save(options%argument('report'), err)
     reported = .true.
     if (allocated(err)) call diagnostics%add_error(err)
   end subroutine work_on_optimum

@@ -3,6 +3,7 @@
 module test_synthesis_work
   use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp
+  use mech9_best_design, only: text_of_best
   use mech9_design_motion, only: design_motion_type, new_design_motion
   use mech9_diagnostics, only: diagnostics_type
   use mech9_document, only: document_type
@@ -14,9 +15,9 @@ module test_synthesis_work
   use mech9_hdf5_reading, only: open_existing, read_integer
   use mech9_hdf5_copying, only: extents_of
   use mech9_model, only: model_type
-  use mech9_optimum_group, only: write_optima
+  use mech9_optimum_layout, only: write_optima
   use mech9_version, only: name_and_version
-  use mech9_optimum_words, only: print_optimum, history_of_design
+  use mech9_optimum_words, only: print_optimum
   use mech9_plan, only: plan_type
   use mech9_start_threads, only: make_in_threads
   use mech9_search_starts, only: all_handed_out
@@ -51,12 +52,12 @@ contains
   end subroutine run
 
   !> Prepare the synthesis. The targets are places of the other slider, l + r cos q in its closed form.
-  subroutine prepare(tester, model, varied, synthesis)
+  subroutine prepare(tester, document, model, varied, synthesis)
     type(tester_type), intent(inout) :: tester                     !< counts the checks
+    type(document_type), intent(out) :: document                   !< the data file
     type(model_type), intent(out) :: model                         !< the model
     type(varied_document_type), intent(out), target :: varied      !< it as a function of its parameters
     type(synthesis_type), intent(out) :: synthesis                 !< ready for starts
-    type(document_type) :: document
     type(diagnostics_type) :: diagnostics
     type(plan_type) :: plan
     type(state_type) :: start
@@ -87,6 +88,7 @@ contains
 
   subroutine search(tester)
     type(tester_type), intent(inout) :: tester   !< counts the checks
+    type(document_type) :: document
     type(model_type) :: model
     type(varied_document_type), target :: varied
     type(synthesis_type) :: synthesis
@@ -95,7 +97,7 @@ contains
     type(error_type), allocatable :: err
     integer :: i
 
-    call prepare(tester, model, varied, synthesis)
+    call prepare(tester, document, model, varied, synthesis)
     allocate (starts%made(3))
     call find_layout(model, synthesis, 'a search', layout)
     call starts%file%create(stem//'.h5', model, layout, .false., err)
@@ -113,7 +115,7 @@ contains
     call near_vector(tester, synthesis%values_of(1), wanted, tol, 'the best one has the lengths of the other slider-crank')
     call tester%near(synthesis%optima(1)%value, 0.0_wp, tol**2, 'it meets all targets')
     call read_back(tester, model, synthesis, starts)
-    call tell(tester, model, synthesis)
+    call tell(tester, document, model, synthesis)
     call draw(tester, model, varied, synthesis)
     do i = 1, 3
       call tester%is_true(allocated(starts%made(i)%found), 'each start has its designs')
@@ -149,8 +151,9 @@ contains
   end subroutine read_back
 
   !> A summary, comments and the group of an HDF5 file.
-  subroutine tell(tester, model, synthesis)
+  subroutine tell(tester, document, model, synthesis)
     type(tester_type), intent(inout) :: tester         !< counts the checks
+    type(document_type), intent(in) :: document        !< the data file
     type(model_type), intent(in) :: model              !< the model
     type(synthesis_type), intent(in) :: synthesis      !< with its designs
     type(hdf5_file_type) :: file
@@ -164,7 +167,7 @@ contains
     call text_of_unit(tester, unit, text)
     call tester%is_true(index(text, '3 starts: 2.5 s; ') == 1 .and. index(text, '  r = 0.25'//eol) > 0 .and. &
                         index(text, '  l = 1.2'//eol) > 0, 'a summary: '//text)
-    call history_of_design(model, synthesis, text)
+    call text_of_best(document, model, synthesis, text)
     call tester%is_true(index(text, '! The best design that '//name_and_version(model%program)// &
                                     ' found by --optimize from 3 starts, seed 5.'//eol) == 1, 'comments')
     call file%create(stem//'.h5', err)

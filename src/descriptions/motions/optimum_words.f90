@@ -1,4 +1,4 @@
-!> How a synthesis went: a summary for the terminal, comments of the best design's data file, and a report for programs.
+!> How a search for the best design went, in words.
 module mech9_optimum_words
   use mech9_kinds, only: wp
   use mech9_text, only: to_text
@@ -6,17 +6,13 @@ module mech9_optimum_words
   use mech9_error, only: error_type
   use mech9_explanation, only: explain
   use mech9_objective, only: quantity_objective
-  use mech9_search, only: optimum_search_type
-  use mech9_diagnostics, only: diagnostics_type
   use mech9_model, only: model_type
-  use mech9_json, only: json_type
-  use mech9_version, only: name_and_version
   use mech9_run_words, only: duration
-  use mech9_report_parts, only: begin_report
   use mech9_synthesis, only: synthesis_type
+  use mech9_search, only: optimum_search_type
   implicit none
   private
-  public :: print_differences, print_optimum, history_of_design, save_optimum_report
+  public :: print_differences, print_optimum
 
 contains
 
@@ -70,50 +66,4 @@ contains
       if (synthesis%optima(1)%x(i) >= synthesis%space%high(i)) words = ', its high'
     end function at_bound
   end subroutine print_optimum
-
-  !> Write comments that tell where a design comes from.
-  subroutine history_of_design(model, synthesis, text)
-    type(model_type), intent(in) :: model                    !< the model
-    type(synthesis_type), intent(in) :: synthesis            !< with its optima, best first
-    character(len=:), allocatable, intent(out) :: text       !< comments, as whole lines
-
-    text = '! The best design that '//name_and_version(model%program)//' found by --optimize from '// &
-           counted(synthesis%done, 'start')//', seed '//to_text(model%request%optimum%seed)//'.'//achar(10)// &
-           '! Value: '//to_text(synthesis%optima(1)%value, 12)//', to which '//counted(synthesis%optima(1)%starts, 'start')// &
-           ' led. The positions in &initial are those of its assembly.'//achar(10)
-  end subroutine history_of_design
-
-  !> Write the report of a synthesis as JSON.
-  subroutine save_optimum_report(path, model, synthesis, table_path, diagnostics, err)
-    character(len=*), intent(in) :: path                   !< of the report
-    type(model_type), intent(in) :: model                  !< the model
-    type(synthesis_type), intent(in) :: synthesis          !< with its optima, best first
-    character(len=*), intent(in) :: table_path             !< path of the table; '-' is standard output; empty: no table
-    type(diagnostics_type), intent(in) :: diagnostics      !< all errors, which determine the exit code
-    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
-    type(json_type) :: json
-    real(wp), allocatable :: values(:)
-    integer :: i
-
-    call begin_report(json, model, diagnostics, table_path)
-    call json%add('distinct', size(synthesis%optima))
-    if (size(synthesis%optima) > 0) then
-      values = synthesis%values_of(1)
-      call json%begin_object('optimum')
-      call json%add('value', synthesis%optima(1)%value)
-      call json%begin_array('parameters')
-      do i = 1, size(values)
-        call json%begin_object()
-        call json%add('name', model%parameters(i)%name)
-        call json%add('value', values(i))
-        call json%end_object()
-      end do
-      call json%end_array()
-      call json%add('starts', synthesis%done)
-      call json%add('reached', synthesis%optima(1)%starts)
-      call json%end_object()
-    end if
-    call json%end_object()
-    call json%save(path, err)
-  end subroutine save_optimum_report
 end module mech9_optimum_words
