@@ -256,7 +256,7 @@ contains
     target = request(:index(request//':', ':') - 1)
     if (.not. is_picture(target) .and. target /= 'term') request = 'term:'//request
     call plot_columns(request, new_heading(kept%title, kept%names, kept%units), labels, kept%rows(:, :kept%count), &
-                      kept%events, kept%sentences, conversation%stem//'.svg', said, err)
+                      kept%events, conversation%stem//'.svg', said, err)
     if (allocated(err)) said = err%message
     if (said /= '') call conversation%say(said)
   end subroutine plot

@@ -3,7 +3,9 @@ module mech9_kept_rows
   use mech9_kinds, only: wp, long
   use mech9_text, only: string_type, nearest_name
   use mech9_part_names, only: part_names_type, number_columns
+  use mech9_mechanism, only: mechanism_type
   use mech9_motion_event, only: motion_events_type
+  use mech9_event_words, only: told_events_type, tell_events
   implicit none
   private
   public :: kept_rows_type
@@ -16,14 +18,14 @@ module mech9_kept_rows
     type(string_type), allocatable :: names(:), units(:)  !< headings and units of the columns, time first
     real(wp), allocatable :: rows(:, :)                   !< rows(:, i): row i; `count` of them are filled
     type(part_names_type) :: parts                        !< names of links and pairs, which may stand in those of columns
-    type(motion_events_type) :: events                    !< those of the run
-    type(string_type), allocatable :: sentences(:)        !< about these events
+    type(told_events_type) :: events                      !< those of the run
     integer :: count = 0                                  !< how many rows are kept
     integer :: stride = 1                                 !< one row of so many is kept
     integer :: seen = 0                                   !< how many rows were taken, with those not kept
   contains
     procedure :: begin
     procedure :: take
+    procedure :: take_events
     procedure :: column
   end type kept_rows_type
 
@@ -61,6 +63,15 @@ contains
       self%seen = self%seen + 1
     end do
   end subroutine take
+
+  !> Keep the events of the run.
+  pure subroutine take_events(self, events, mechanism)
+    class(kept_rows_type), intent(inout) :: self     !< the kept rows
+    type(motion_events_type), intent(in) :: events   !< in the order of time
+    type(mechanism_type), intent(in) :: mechanism    !< the mechanism
+
+    call tell_events(events, mechanism, self%events)
+  end subroutine take_events
 
   !> Number of the column with a name; if there is none, 0 and the nearest name.
   pure subroutine column(self, name, number, meant)

@@ -2,9 +2,12 @@
 module mech9_result_sink
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
+  use mech9_mechanism, only: mechanism_type
+  use mech9_motion_event, only: motion_events_type
+  use mech9_event_words, only: told_events_type, tell_events
   implicit none
   private
-  public :: result_sink_type, sink_slot_type, append_sink
+  public :: result_sink_type, sink_slot_type, append_sink, mark_events
 
   !> A sink is open when it is handed to a recording.
   type, abstract :: result_sink_type
@@ -13,6 +16,7 @@ module mech9_result_sink
   contains
     procedure(rows_interface), deferred :: write_rows
     procedure :: flush => flush_nothing
+    procedure :: mark => mark_nothing
     procedure(close_interface), deferred :: close
     procedure :: words => no_words
   end type result_sink_type
@@ -46,6 +50,26 @@ contains
     class(result_sink_type), intent(inout) :: self     !< the result sink
     type(error_type), allocatable, intent(out) :: err  !< allocated if it failed
   end subroutine flush_nothing
+
+  !> Take the events of the run, before the sink is closed; by default it has no use for them.
+  subroutine mark_nothing(self, events)
+    class(result_sink_type), intent(inout) :: self     !< the result sink
+    type(told_events_type), intent(in) :: events       !< in the order of time
+  end subroutine mark_nothing
+
+  !> Hand the events of a run to its sinks, before these are closed.
+  subroutine mark_events(slots, events, mechanism)
+    type(sink_slot_type), intent(inout) :: slots(:)    !< the open sinks of the run
+    type(motion_events_type), intent(in) :: events     !< in the order of time
+    type(mechanism_type), intent(in) :: mechanism      !< the mechanism
+    type(told_events_type) :: told
+    integer :: i
+
+    call tell_events(events, mechanism, told)
+    do i = 1, size(slots)
+      call slots(i)%sink%mark(told)
+    end do
+  end subroutine mark_events
 
   !> A line for the user about the files written, after the sink is closed; by default there is none.
   function no_words(self) result(words)

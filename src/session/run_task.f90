@@ -3,7 +3,6 @@ module mech9_run_task
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_text, only: string_type
   use mech9_system, only: asked_to_end
   use mech9_command_line, only: command_line_type
   use mech9_diagnostics, only: diagnostics_type
@@ -11,7 +10,6 @@ module mech9_run_task
   use mech9_free_simulation, only: free_simulation_type
   use mech9_model_motion, only: model_motion_type
   use mech9_run, only: run_type
-  use mech9_motion_event, only: motion_events_type
   use mech9_periodic, only: periodic_found_type
   use mech9_row_source, only: row_source_type
   use mech9_force_record, only: reacting_pairs
@@ -19,13 +17,13 @@ module mech9_run_task
   use mech9_json, only: json_type
   use mech9_facts, only: facts_type
   use mech9_kept_rows, only: kept_rows_type
+  use mech9_result_sink, only: mark_events
   use mech9_hdf5_sink, only: hdf5_sink_type
   use mech9_force_layout, only: write_uniqueness
   use mech9_quantity_layout, only: write_quantities
   use mech9_structure_text, only: print_structure, print_mobility
   use mech9_held_text, only: print_held
   use mech9_parameter_text, only: print_parameter_notes
-  use mech9_event_words, only: with_impulses_in_units, event_sentences
   use mech9_plan_text, only: print_plan
   use mech9_force_text, only: print_undetermined, print_forceless
   use mech9_start_way_text, only: print_start_way
@@ -87,7 +85,8 @@ contains
       call list_run_facts(motion, outcome, facts)
       call results%write_facts(facts, diagnostics%code())
       if (associated(hdf5) .and. motion%is_free()) call write_end(hdf5, motion%free())
-      call tell_events(model, motion%simulation%events, results, kept)
+      call mark_events(results%sinks, motion%simulation%events, model%mechanism)
+      if (present(kept)) call kept%take_events(motion%simulation%events, model%mechanism)
       call end_run(options, pictures, model, source, results, diagnostics)
       if (.not. reported) return
       call compose_report(json, model, diagnostics, results%table_path, facts, run, periodic)
@@ -116,23 +115,6 @@ contains
     call hdf5%write_changes(rows)
     call write_events(hdf5%file, simulation)
   end subroutine write_end
-
-  !> Tell the events of a run to its results and to the kept rows, with impulses in the units of the data file.
-  subroutine tell_events(model, events, results, kept)
-    type(model_type), intent(in) :: model                      !< of the run
-    type(motion_events_type), intent(in) :: events             !< in the order of time
-    type(results_type), intent(inout) :: results               !< those of the run
-    type(kept_rows_type), intent(inout), optional :: kept      !< gets the events, too
-    type(motion_events_type) :: told
-    type(string_type), allocatable :: sentences(:)
-
-    told = with_impulses_in_units(events, model%mechanism)
-    call event_sentences(told, model%mechanism, sentences)
-    call results%mark_events(told, sentences)
-    if (.not. present(kept)) return
-    kept%events = told
-    call move_alloc(sentences, kept%sentences)
-  end subroutine tell_events
 
   !> Find the tolerances for an accuracy, where one is asked for, and tell where the runs are that this needs.
   subroutine find_tolerances(options, pictures, model, motion, err)

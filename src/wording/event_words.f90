@@ -8,37 +8,31 @@ module mech9_event_words
     event_slip, event_lift
   implicit none
   private
-  public :: write_event_sentence, event_sentences, with_impulses_in_units
+  public :: told_events_type, tell_events, write_event_sentence
+
+  !> The events of a motion with impulses in the units of the data file, and the sentences about them.
+  type, extends(motion_events_type) :: told_events_type
+    type(string_type), allocatable :: sentences(:)   !< (count)
+  end type told_events_type
 
 contains
 
-  !> The events of a motion with impulses in the units of the data file.
-  pure function with_impulses_in_units(events, mechanism) result(converted)
+  !> Tell the events of a motion, with the names of coordinates.
+  pure subroutine tell_events(events, mechanism, told)
     type(motion_events_type), intent(in) :: events      !< with impulses in N s or N m s
     type(mechanism_type), intent(in) :: mechanism       !< the mechanism
-    type(motion_events_type) :: converted
+    type(told_events_type), intent(out) :: told         !< the same events
     integer :: i
 
-    converted = events
+    told%motion_events_type = events
+    allocate (told%sentences(events%count))
     do i = 1, events%count
-      associate (event => converted%items(i))
+      associate (event => told%items(i))
         event%impulse = event%impulse/impulse_unit_of(mechanism, trim(event%group), event%number)
+        call write_event_sentence(event, mechanism, told%sentences(i)%text)
       end associate
     end do
-  end function with_impulses_in_units
-
-  !> The sentences about the events of a motion, with the names of coordinates.
-  pure subroutine event_sentences(events, mechanism, sentences)
-    type(motion_events_type), intent(in) :: events                !< with impulses in the units that the sentences show
-    type(mechanism_type), intent(in) :: mechanism                 !< the mechanism
-    type(string_type), allocatable, intent(out) :: sentences(:)   !< (events)
-    integer :: i
-
-    allocate (sentences(events%count))
-    do i = 1, events%count
-      call write_event_sentence(events%items(i), mechanism, sentences(i)%text)
-    end do
-  end subroutine event_sentences
+  end subroutine tell_events
 
   !> Write the sentence about an event, such as "stop 1 (hip) is hit, impulse -1.579".
   pure subroutine write_event_sentence(event, mechanism, text)

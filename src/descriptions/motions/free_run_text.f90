@@ -6,15 +6,13 @@ module mech9_free_run_text
   use mech9_number_lists, only: same_numbers
   use mech9_part_names, only: part_names_type
   use mech9_named_words, only: with_names, named_list
-  use mech9_mechanism, only: mechanism_type
   use mech9_model, only: model_type
   use mech9_check_notes, only: print_run_notes
   use mech9_model_motion, only: model_motion_type
   use mech9_run_outcome, only: run_outcome_type
   use mech9_integrator, only: integration_statistics_type
   use mech9_simulation, only: coordinate_change_type
-  use mech9_motion_event, only: motion_events_type
-  use mech9_event_words, only: write_event_sentence, with_impulses_in_units
+  use mech9_event_words, only: told_events_type, tell_events
   use mech9_free_simulation, only: free_simulation_type
   use mech9_run_words, only: duration, each
   use mech9_energy_text, only: words_of_energy_change
@@ -34,6 +32,7 @@ contains
     type(free_simulation_type), intent(inout) :: simulation  !< the motion, as far as it went
     character(len=*), intent(in) :: table_path               !< path of the table; '-': standard output; empty: none
     type(run_outcome_type), intent(in) :: outcome            !< number of rows, and the times for solving and writing
+    type(told_events_type) :: events
     type(integration_statistics_type) :: counts
     integer :: i
 
@@ -61,8 +60,8 @@ contains
         with_names(simulation%model%mechanism%names, &
                    change_words(simulation%coordinate_changes, simulation%model%mechanism%names, i))
     end do
-    call print_events(unit, with_impulses_in_units(simulation%events, simulation%model%mechanism), &
-                      simulation%model%mechanism)
+    call tell_events(simulation%events, simulation%model%mechanism, events)
+    call print_events(unit, events)
     call print_run_notes(unit, simulation%model, .true.)
     if (table_path /= '' .and. table_path /= '-') write (unit, '(2a)') 'table: ', table_path
   end subroutine print_free_run
@@ -78,21 +77,16 @@ contains
   end function by_bdf
 
   !> Print the first and the last events, and how many there are.
-  subroutine print_events(unit, events, mechanism)
+  subroutine print_events(unit, events)
     integer, intent(in) :: unit                       !< Fortran unit to write to
-    type(motion_events_type), intent(in) :: events    !< of the motion
-    type(mechanism_type), intent(in) :: mechanism     !< the mechanism
-    character(len=:), allocatable :: sentence
+    type(told_events_type), intent(in) :: events      !< of the motion
     integer :: i
 
     do i = 1, events%count
       if (i > printed_events .and. i < events%count) cycle
       if (i == events%count .and. i > printed_events + 1) &
         write (unit, '(a)') counted(i - printed_events - 1, 'more event')//'; the option --report writes all of them'
-      associate (event => events%items(i))
-        call write_event_sentence(event, mechanism, sentence)
-        write (unit, '(a)') 't = '//to_text(event%t, 8)//' s: '//sentence
-      end associate
+      write (unit, '(a)') 't = '//to_text(events%items(i)%t, 8)//' s: '//events%sentences(i)%text
     end do
   end subroutine print_events
 

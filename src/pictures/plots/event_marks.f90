@@ -7,10 +7,11 @@ module mech9_event_marks
   use mech9_kinds, only: wp
   use mech9_counted, only: counted
   use mech9_error, only: error_type
-  use mech9_text, only: string_type, to_text
+  use mech9_text, only: to_text
   use mech9_file_bytes, only: read_bytes
   use mech9_text_file, only: replace_text
-  use mech9_motion_event, only: motion_event_type, motion_events_type, event_impact, event_close, event_open, &
+  use mech9_event_words, only: told_events_type
+  use mech9_motion_event, only: motion_event_type, event_impact, event_close, event_open, &
     event_stick, event_slip, event_lift
   use mech9_gnuplot, only: quoted
   implicit none
@@ -35,9 +36,8 @@ module mech9_event_marks
 contains
 
   !> The commands that mark the events within a range of the time. Each mark that stands for several events tells the first one.
-  pure function event_marks(events, sentences, ends) result(text)
-    type(motion_events_type), intent(in) :: events   !< the events of the run
-    type(string_type), intent(in) :: sentences(:)    !< of these events, in their order
+  pure function event_marks(events, ends) result(text)
+    type(told_events_type), intent(in) :: events     !< the events of the run
     real(wp), intent(in) :: ends(2)                  !< first and last time on the axis [s]
     character(len=:), allocatable :: text
     logical :: lines
@@ -56,11 +56,11 @@ contains
             cycle
           end if
         end if
-        if (first > 0) text = text//mark(events%items(first), sentences(first)%text, more, kind, lines)
+        if (first > 0) text = text//mark(events%items(first), events%sentences(first)%text, more, kind, lines)
         first = i
         more = 0
       end do
-      if (first > 0) text = text//mark(events%items(first), sentences(first)%text, more, kind, lines)
+      if (first > 0) text = text//mark(events%items(first), events%sentences(first)%text, more, kind, lines)
     end do
   end function event_marks
 
@@ -99,7 +99,7 @@ contains
 
   !> The parts of a plot command that explain the symbols of events in the key; each begins with a comma.
   pure function event_key(events, ends) result(text)
-    type(motion_events_type), intent(in) :: events   !< the events of the run
+    type(told_events_type), intent(in) :: events     !< the events of the run
     real(wp), intent(in) :: ends(2)                  !< first and last time on the axis [s]
     character(len=:), allocatable :: text
     integer :: kind, i

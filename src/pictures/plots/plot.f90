@@ -11,7 +11,7 @@ module mech9_plot
   use mech9_terminal_size, only: find_terminal_size
   use mech9_plot_request, only: plot_request_type, read_plot_request, target_of_plot
   use mech9_plot_data, only: plot_data_type, new_plot_data
-  use mech9_motion_event, only: motion_events_type
+  use mech9_event_words, only: told_events_type
   use mech9_event_marks, only: turn_hypertexts_into_titles
   use mech9_plot_script, only: picture_script, terminal_script
   implicit none
@@ -28,8 +28,7 @@ module mech9_plot
     character(len=:), allocatable :: said
     type(plot_request_type) :: request
     type(plot_data_type) :: data
-    type(motion_events_type) :: events          !< marked in plots over the time
-    type(string_type), allocatable :: sentences(:)   !< about these events
+    type(told_events_type) :: events            !< marked in plots over the time
     logical :: is_open = .false.
   contains
     procedure :: open => open_plot
@@ -59,7 +58,6 @@ contains
     if (self%request%target /= '') self%picture = self%request%target
     self%table = table
     self%said = ''
-    allocate (self%sentences(0))
     self%data = new_plot_data(heading%names, heading%units, self%request%curves, expected)
     self%data%are_points = self%request%of_section
     self%is_open = .true.
@@ -104,13 +102,11 @@ contains
   end subroutine close_plot
 
   !> Take the events of the run, before the plot is closed. A plot in the terminal does not mark them.
-  subroutine mark(self, events, sentences)
+  subroutine mark(self, events)
     class(plot_type), intent(inout) :: self            !< request and rows of the plot
-    type(motion_events_type), intent(in) :: events     !< in the order of time
-    type(string_type), intent(in) :: sentences(:)      !< about these events
+    type(told_events_type), intent(in) :: events       !< in the order of time
 
     self%events = events
-    self%sentences = sentences
   end subroutine mark
 
   !> The line for the user after the plot is closed.
@@ -141,7 +137,7 @@ contains
     source = ''
     if (can_be_read(self%table) .and. folder_of(self%table) == folder_of(self%picture)) source = name_of(self%table)
     call draw_picture(self%picture, picture_script(self%title, self%request%curves, self%data, name_of(self%picture), &
-                      name_of(script_of_plot(self%picture)), source, self%events, self%sentences), &
+                      name_of(script_of_plot(self%picture)), source, self%events), &
                       self%said, self%is_lacking, err)
     if (.not. (allocated(err) .or. self%is_lacking) .and. self%events%count > 0 .and. ending_of(self%picture) == 'svg') &
       call turn_hypertexts_into_titles(self%picture, err)
@@ -175,13 +171,12 @@ contains
   end subroutine picture_of_plot
 
   !> Plot rows that are in memory.
-  subroutine plot_columns(text, heading, labels, rows, events, sentences, picture, said, err)
+  subroutine plot_columns(text, heading, labels, rows, events, picture, said, err)
     character(len=*), intent(in) :: text                !< request in the form of the argument of --plot
     type(heading_type), intent(in) :: heading           !< title, and columns of the results, the time first
     type(string_type), intent(in) :: labels(:)          !< names of the columns as the plot shows them
     real(wp), intent(in) :: rows(:, :)                  !< (columns,rows) rows of the results
-    type(motion_events_type), intent(in) :: events      !< those of the run
-    type(string_type), intent(in) :: sentences(:)       !< about these events
+    type(told_events_type), intent(in) :: events        !< those of the run
     character(len=*), intent(in) :: picture             !< file of the picture, unless `text` names one
     character(len=:), allocatable, intent(out) :: said  !< a line for the user; empty: nothing to say
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
@@ -192,7 +187,7 @@ contains
     if (allocated(err)) return
     call plot%call_columns(heading%names, labels)
     call plot%write_rows(rows, err)
-    call plot%mark(events, sentences)
+    call plot%mark(events)
     call plot%close(err)
     said = plot%words()
   end subroutine plot_columns

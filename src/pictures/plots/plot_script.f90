@@ -12,7 +12,7 @@ module mech9_plot_script
   use mech9_plot_panels, only: panels_of, axis_label, over_time
   use mech9_plot_axes, only: axis_commands
   use mech9_plot_layout, only: layout_type, find_plot_layout, picture_width, margins, equal_scales, ranges_of, curve_name
-  use mech9_motion_event, only: motion_events_type
+  use mech9_event_words, only: told_events_type
   use mech9_event_marks, only: event_marks, event_key, no_marks
   implicit none
   private
@@ -31,15 +31,14 @@ module mech9_plot_script
 contains
 
   !> The script of a picture. Users can run it again, and its first line tells how.
-  pure function picture_script(title, curves, data, picture, script, table, events, sentences) result(text)
+  pure function picture_script(title, curves, data, picture, script, table, events) result(text)
     character(len=*), intent(in) :: title      !< title of the mechanism
     type(curve_type), intent(in) :: curves(:)  !< the curves, each with its two columns
     type(plot_data_type), intent(in) :: data   !< rows and columns that are plotted
     character(len=*), intent(in) :: picture    !< name of the file of the picture, without its folder
     character(len=*), intent(in) :: script     !< name of the file of the script, without its folder
     character(len=*), intent(in) :: table      !< file with the results, without its folder; empty: the script holds the data
-    type(motion_events_type), intent(in) :: events   !< those of the run, which are marked over the time
-    type(string_type), intent(in) :: sentences(:)    !< about these events
+    type(told_events_type), intent(in) :: events     !< those of the run, which are marked over the time
     character(len=:), allocatable :: text, source, key
     type(string_type), allocatable :: lines(:)
     type(curve_type), allocatable :: own(:)
@@ -71,7 +70,7 @@ contains
       own = pack(curves, panels == i)
       if (events%count > 0 .and. (over_time(own(1)) .neqv. marked)) then
         marked = .not. marked
-        if (marked) text = text//event_marks(events, sentences, data%extent(own%x))
+        if (marked) text = text//event_marks(events, data%extent(own%x))
         if (marked) key = event_key(events, data%extent(own%x))
         if (.not. marked) text = text//no_marks
       end if

@@ -8,7 +8,6 @@ module mech9_results
   use mech9_result_sink, only: result_sink_type, sink_slot_type, append_sink
   use mech9_heading, only: heading_type, heading_of
   use mech9_table, only: table_type
-  use mech9_motion_event, only: motion_events_type
   use mech9_plot, only: plot_type, picture_of_plot
   use mech9_plot_request, only: is_of_section
   use mech9_hdf5_sink, only: hdf5_sink_type
@@ -33,7 +32,6 @@ module mech9_results
   contains
     procedure :: open => open_results
     procedure :: write_rows
-    procedure :: mark_events
     procedure :: flush => flush_results
     procedure :: close => close_results
     procedure :: print_words
@@ -184,21 +182,6 @@ contains
       if (allocated(err)) return
     end do
   end subroutine write_rows
-
-  !> Hand the events of the run to the plots, before these are closed.
-  subroutine mark_events(self, events, sentences)
-    class(results_type), intent(inout) :: self       !< the results
-    type(motion_events_type), intent(in) :: events   !< in the order of time
-    type(string_type), intent(in) :: sentences(:)    !< about these events
-    integer :: i
-
-    do i = 1, size(self%sinks)
-      select type (sink => self%sinks(i)%sink)
-      type is (plot_type)
-        call sink%mark(events, sentences)
-      end select
-    end do
-  end subroutine mark_events
 
   !> Write the rows that are held back, in all results; the first error is returned.
   subroutine flush_results(self, err)

@@ -6,7 +6,7 @@ module test_plot_texts
   use mech9_plot_blocks, only: block_of, find_layout
   use mech9_plot_data, only: plot_data_type, new_plot_data
   use mech9_plot_request, only: plot_request_type, read_plot_request
-  use mech9_motion_event, only: motion_events_type
+  use mech9_event_words, only: told_events_type
   use mech9_plot_script, only: picture_script
   use mech9_plot_drawing, only: script_of_plot
   use mech9_plot_axes, only: axis_step, axis_commands
@@ -130,7 +130,7 @@ contains
 
   subroutine scripts(tester)
     type(tester_type), intent(inout) :: tester   !< counts the checks
-    type(string_type) :: names(2), units(2), none(0)
+    type(string_type) :: names(2), units(2)
     type(string_type), allocatable :: lines(:)
     type(plot_request_type) :: request
     type(plot_data_type) :: data
@@ -147,11 +147,11 @@ contains
     do i = 1, 3
       call data%take([1.0_wp*i, 0.5_wp*i])
     end do
-    text = picture_script('it''s', request%curves, data, 'p.svg', 'p.gp', '', motion_events_type(), none)
+    text = picture_script('it''s', request%curves, data, 'p.svg', 'p.gp', '', told_events_type())
     call tester%is_true(index(text, '# gnuplot p.gp draws p.svg'//eol) == 1, 'the first line tells its use')
     call tester%is_true(index(text, 'set output ''./p.svg''') > 0 .and. index(text, 'set title "it''s"') > 0, 'output and title')
     call tester%is_true(index(text, '$data <<') > 0, 'the script holds the data')
-    text = picture_script('x', request%curves, data, 'p.svg', 'p.gp', 'r.dat', motion_events_type(), none)
+    text = picture_script('x', request%curves, data, 'p.svg', 'p.gp', 'r.dat', told_events_type())
     call tester%is_true(index(text, '$data <<') == 0 .and. index(text, '''./r.dat''') > 0, 'or names the table')
     call tester%is_true(index(picture_terminal('a.png', 8, 6), 'pngcairo') > 0 .and. &
                         index(picture_terminal('a.pdf', 96, 192), 'size 1in,2in') > 0 .and. &
