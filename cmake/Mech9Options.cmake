@@ -75,7 +75,7 @@ if(CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
   # How the floors are compiled in an optimised build (src/CMakeLists.txt); procedures that nothing calls are left out of programs.
   if(CMAKE_BUILD_TYPE STREQUAL "Release")
     set(MECH9_FAST_COMPILE -O3)
-    list(APPEND MECH9_LANES_COMPILE -O3 --param=max-completely-peel-times=0 -fno-trapping-math)
+    list(APPEND MECH9_LANES_COMPILE -O3 --param=max-completely-peel-times=4 -fno-trapping-math)
     # passes that take a third of the time of compiling and make no code smaller are left out
     set(MECH9_SMALL_COMPILE -Os -fno-tree-pre -fno-code-hoisting -fno-gcse -fno-rerun-cse-after-loop -fno-schedule-insns2
       -fno-expensive-optimizations -fno-tree-ccp)

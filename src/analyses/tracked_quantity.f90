@@ -15,7 +15,7 @@ module mech9_tracked_quantity
   use mech9_quantity_gradient, only: quantity_gradient_type
   implicit none
   private
-  public :: tracked_quantity_type
+  public :: tracked_quantity_type, outputs_about
 
   integer, parameter :: most_outputs = 4   !< outputs through which a polynomial goes
   !> Largest difference of the polynomials through two and through all outputs, over the variation of the column, with which the
@@ -54,7 +54,9 @@ module mech9_tracked_quantity
     procedure :: take_at
     procedure :: begin_piece
     procedure :: end_piece
-    procedure :: take_motion
+    procedure :: counts_turns
+    procedure :: begin_motion
+    procedure :: take_interval
     procedure :: finish
     procedure :: number
     procedure :: find_gradient
@@ -272,39 +274,50 @@ contains
     end function between
   end subroutine take_values
 
-  !> Take a whole motion without joints of laws: all outputs, as the procedures above take them one by one.
-  pure subroutine take_motion(self, rule, t, y)
-    class(tracked_quantity_type), intent(inout) :: self   !< the quantity, without any outputs, whose derivatives are not followed
-    type(chebyshev_type), intent(in) :: rule              !< points in an interval
-    real(wp), intent(in) :: t(:)                          !< (n) times of the outputs [s]
-    real(wp), intent(in) :: y(0:, :)                      !< (0:2,n) position, rate and acceleration, each the derivative of the one before
-    integer :: first, j, last, n
-    logical :: of_ends
+  !> Whether an interval matters where the rate of the polynomial through its ends does not keep its sign alone: an extreme of a
+  !> position is sought.
+  pure logical function counts_turns(self)
+    class(tracked_quantity_type), intent(in) :: self   !< the quantity
 
-    n = size(t)
-    call self%sums%begin(t(1), y(self%order, 1))
-    self%seen = n
-    of_ends = self%order == 0 .and. any(self%take == [character(len=8) :: 'min', 'max', 'peak', 'range'])
-    do j = 1, merge(n - 1, 0, self%follows())
-      if (of_ends) then
-        if (rate_keeps_sign(t(j + 1) - t(j), y(:, j), y(:, j + 1))) then
-          call self%sums%add_value(t(j + 1), y(0, j + 1))
-          cycle
-        end if
-      end if
-      ! the outputs that are kept when the interval is taken into account
-      first = max(1, j - 1)
-      last = min(n, j + 2)
-      if (j == 1) last = min(n, most_outputs - 1)
-      if (j == n - 1) first = max(1, n - most_outputs + 1)
-      self%count = last - first + 1
-      self%t(:self%count) = t(first:last)
-      self%y(:, :self%count) = y(:, first:last)
-      self%done = j - first
-      call add_intervals(self, rule, self%done + 1)
-    end do
-    self%sums%last = y(self%order, n)
-  end subroutine take_motion
+    counts_turns = self%order == 0 .and. any(self%take == [character(len=8) :: 'min', 'max', 'peak', 'range'])
+  end function counts_turns
+
+  !> The outputs that are kept when an interval of a whole motion is taken into account: the first and the last of them.
+  pure function outputs_about(interval, n) result(outputs)
+    integer, intent(in) :: interval   !< its number, from 1
+    integer, intent(in) :: n          !< number of outputs of the motion
+    integer :: outputs(2)
+
+    outputs = [max(1, interval - 1), min(n, interval + 2)]
+    if (interval == 1) outputs(2) = min(n, most_outputs - 1)
+    if (interval == n - 1) outputs(1) = max(1, n - most_outputs + 1)
+  end function outputs_about
+
+  !> Begin a whole motion without joints of laws, whose intervals are taken as the procedures above take them.
+  pure subroutine begin_motion(self, t, value)
+    class(tracked_quantity_type), intent(inout) :: self   !< the quantity, without any outputs, whose derivatives are not followed
+    real(wp), intent(in) :: t                             !< its start [s]
+    real(wp), intent(in) :: value                         !< of the column there
+
+    call self%sums%begin(t, value)
+    self%seen = 1
+  end subroutine begin_motion
+
+  !> Take an interval of a whole motion into account.
+  pure subroutine take_interval(self, rule, number, t, y)
+    class(tracked_quantity_type), intent(inout) :: self   !< the quantity
+    type(chebyshev_type), intent(in) :: rule              !< points in an interval
+    integer, intent(in) :: number                         !< of the interval among those between these outputs
+    real(wp), intent(in) :: t(:)                          !< (outputs about it) their times [s]
+    real(wp), intent(in) :: y(0:, :)                      !< (0:2,outputs about it) position, rate and acceleration, each the
+                                                          !< derivative of the one before
+
+    self%count = size(t)
+    self%t(:self%count) = t
+    self%y(:, :self%count) = y
+    self%done = number - 1
+    call add_intervals(self, rule, number)
+  end subroutine take_interval
 
   !> End with the last output.
   pure subroutine finish(self, rule)
@@ -400,8 +413,8 @@ contains
     type(tracked_quantity_type), intent(in) :: self   !< the quantity
     integer, intent(in) :: j                          !< number of the interval
 
-    at_ends = .false.
-    if (self%order > 0 .or. all(self%take /= [character(len=8) :: 'min', 'max', 'peak', 'range'])) return
+    at_ends = self%counts_turns()
+    if (.not. at_ends) return
     at_ends = rate_keeps_sign(self%t(j + 1) - self%t(j), self%y(:, j), self%y(:, j + 1))
   end function has_extremes_at_ends
 

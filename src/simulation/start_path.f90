@@ -15,7 +15,7 @@ module mech9_start_path
   use mech9_straight_drives, only: straight_drives
   implicit none
   private
-  public :: start_way_type, assemble_start
+  public :: start_way_type, assemble_start, find_drawn
 
   !> How the start was reached from the position in which the mechanism is drawn.
   type :: start_way_type
@@ -48,23 +48,24 @@ contains
 
   !> Find the position in which the mechanism is drawn: that of the values in &initial, or, where the user gives no dependent
   !> coordinate, that in which all coordinates are zero. It exists where the chains close in it, and not at the start.
-  subroutine find_drawn(model, start, drawn, exists)
+  subroutine find_drawn(model, start, drawn, exists, known)
     type(model_type), intent(in) :: model     !< the model
     real(wp), intent(in) :: start(:)          !< (M) values and guesses at the start [rad, m]
     real(wp), intent(out) :: drawn(:)         !< (M) the drawn position [rad, m]
     logical, intent(out) :: exists            !< there is one away from the start
+    type(plan_type), intent(in), optional :: known   !< the plan of the mechanism, where it is known
 
     exists = .false.
     associate (problem => model%problem)
       drawn = problem%initial%position
       if (all(problem%partition%kind == dependent_coordinate)) return
       if (is_at(drawn, start) .and. is_zero(drawn)) return
-      if (is_drawn_closed(model%mechanism, problem%partition, start)) return
-      if (.not. is_at(drawn, start)) exists = is_drawn_closed(model%mechanism, problem%partition, drawn)
+      if (is_drawn_closed(model%mechanism, problem%partition, start, known)) return
+      if (.not. is_at(drawn, start)) exists = is_drawn_closed(model%mechanism, problem%partition, drawn, known)
       if (exists .or. is_zero(drawn)) return
       if (any(problem%initial%position_given .and. problem%partition%kind == dependent_coordinate)) return
       drawn = 0.0_wp
-      exists = is_drawn_closed(model%mechanism, problem%partition, drawn)
+      exists = is_drawn_closed(model%mechanism, problem%partition, drawn, known)
     end associate
   end subroutine find_drawn
 

@@ -20,13 +20,14 @@ module mech9_lane_runs
   use mech9_chebyshev, only: chebyshev_type, new_chebyshev
   use mech9_simulation, only: interruption_type
   use mech9_explained_assembly, only: assemble_model
-  use mech9_tracked_quantity, only: tracked_quantity_type
+  use mech9_tracked_quantity, only: tracked_quantity_type, outputs_about
   use mech9_quantity_record, only: quantity_record_type
   use mech9_quantity_pieces, only: points_between
   use mech9_design_run, only: find_quantities
   use mech9_lane_tolerances, only: closed
-  use mech9_lane_group, only: lane_group_type, lanes, new_lane_group, fits_lanes, fill_lane, copy_lane
-  use mech9_lane_motion, only: begin_group, go_on_with_group, find_point
+  use mech9_lane_group, only: lane_group_type, lanes, new_lane_group, fits_lanes, fill_lane, renew_lane, copy_lane
+  use mech9_lane_starts, only: lane_starts_type
+  use mech9_lane_motion, only: begin_group, go_on_with_group, find_point, keep_column
   implicit none
   private
   public :: lane_runs_type, lane_failure_type
@@ -55,13 +56,20 @@ module mech9_lane_runs
     integer :: bits = 128                                            !< of the vector registers
     integer :: made = 0                                              !< runs that were made
     type(model_type), allocatable, private :: model                  !< with the values of the data file
+    type(lane_starts_type), private :: starts                        !< of designs with the plan of the data file's design
     type(requested_type), private :: requested                       !< the part of the motion that quantities need
     type(chebyshev_type), private :: rule                            !< points between outputs
     type(tracked_quantity_type), allocatable, private :: tracked(:)  !< the quantities, at their beginning
     type(column_source_type), allocatable, private :: sources(:)     !< (quantities) of their columns
     type(lane_group_type), private :: group                          !< the present group, of the structure of the data file's design
     real(wp), allocatable, private :: t(:)                           !< (0:intervals) times of the outputs [s]
-    real(wp), allocatable, private :: series(:, :, :, :)             !< (0:2,0:intervals,quantities,lanes) their columns
+    real(wp), allocatable, private :: drives(:, :, :)                !< (4,0:intervals,drives) motion of the data file's drives at the
+                                                                     !< outputs, and a bound of the way in the step to them
+    real(wp), allocatable, private :: series(:, :, :, :)             !< (lanes,0:2,0:intervals,quantities) columns of quantities
+    real(wp), allocatable, private :: range(:, :, :)                 !< (lanes,2,quantities) least and largest number
+    integer, allocatable, private :: turning(:, :, :)                !< (intervals,quantities,lanes) first intervals that may have
+                                                                     !< turning points
+    integer, allocatable, private :: turnings(:, :)                  !< (quantities,lanes) how many there are
   contains
     procedure :: begin
     procedure :: make
@@ -82,7 +90,7 @@ contains
     type(plan_type) :: plan
     type(state_type) :: state
     type(error_type), allocatable :: err
-    integer :: i
+    integer :: i, k
     logical :: found
 
     if (.not. is_simple(model)) return
@@ -99,6 +107,8 @@ contains
     ! the structure of the data file's own design: which others are followed side by side must not depend on their order
     call assemble_model(model, plan, state, err)
     if (allocated(err)) return
+    if (.not. plan%planar%used) return
+    call self%starts%begin(plan)
     call leave_out_unrequested(plan, self%requested)
     if (.not. fits_lanes(plan)) return
     call new_lane_group(plan, self%group)
@@ -106,8 +116,16 @@ contains
     associate (time => model%request%time)
       if (real(time%intervals, wp)*size(self%tracked)*3*lanes > most_numbers) return
       allocate (self%t(0:time%intervals), source=[(time%time(i), i=0, time%intervals)])
-      allocate (self%series(0:2, 0:time%intervals, size(self%tracked), lanes), source=0.0_wp)
+      allocate (self%series(lanes, 0:2, 0:time%intervals, size(self%tracked)), self%range(lanes, 2, size(self%tracked)), &
+                source=0.0_wp)
+      allocate (self%turning(time%intervals, size(self%tracked), lanes), self%turnings(size(self%tracked), lanes), source=0)
+      allocate (self%drives(4, 0:time%intervals, size(model%problem%drives)))
     end associate
+    do i = 1, size(model%problem%drives)
+      do k = 0, size(self%t) - 1
+        call move_drive(model%problem%drives(i)%drive, self%t(k), self%t(k) - self%t(max(0, k - 1)), self%drives(:, k, i))
+      end do
+    end do
     self%bits = vector_bits()
     self%used = .true.
   end subroutine begin
@@ -164,7 +182,6 @@ contains
     logical, intent(inout) :: done(:)                   !< (runs) the model is of use in; the run is made out
     type(lane_failure_type), intent(out) :: failures(:) !< (runs) of designs that a run alone could not assemble either
     class(interruption_type), intent(inout), optional :: interruption   !< is asked whether the runs shall stop
-    type(tracked_quantity_type) :: tracked
     integer :: i, l
 
     do l = 1, size(models)
@@ -175,12 +192,51 @@ contains
       if (.not. done(l)) cycle
       self%made = self%made + 1
       do i = 1, size(self%tracked)
-        tracked = self%tracked(i)
-        call tracked%take_motion(self%rule, self%t, self%series(:, :, i, l))
-        numbers(i, l) = tracked%number()
+        call find_number(self, i, l, numbers(i, l))
       end do
     end do
   end subroutine make
+
+  !> Find a quantity of a run from its column.
+  subroutine find_number(self, quantity, lane, number)
+    type(lane_runs_type), intent(in) :: self     !< with the columns
+    integer, intent(in) :: quantity              !< number of the quantity
+    integer, intent(in) :: lane                  !< number of the lane
+    real(wp), intent(out) :: number              !< gets it
+    type(tracked_quantity_type) :: tracked
+    integer :: k, n
+
+    n = size(self%t)
+    tracked = self%tracked(quantity)
+    associate (series => self%series(lane, :, :, quantity), range => self%range(lane, :, quantity), order => tracked%order)
+      call tracked%begin_motion(self%t(0), series(order + 1, 1))
+      if (tracked%counts_turns()) then
+        do k = 1, self%turnings(quantity, lane)
+          call take(self%turning(k, quantity, lane))
+        end do
+        tracked%sums%low = min(tracked%sums%low, range(1))
+        tracked%sums%high = max(tracked%sums%high, range(2))
+      else if (tracked%follows()) then
+        do k = 1, n - 1
+          call take(k)
+        end do
+      end if
+      tracked%sums%last = series(order + 1, n)
+    end associate
+    number = tracked%number()
+
+  contains
+
+    !> Take an interval into account.
+    subroutine take(interval)
+      integer, intent(in) :: interval   !< its number
+      integer :: ends(2)
+
+      ends = outputs_about(interval, n)
+      call tracked%take_interval(self%rule, interval - ends(1) + 1, self%t(ends(1) - 1:ends(2) - 1), &
+                                 self%series(lane, :, ends(1) - 1:ends(2) - 1, quantity))
+    end subroutine take
+  end subroutine find_number
 
   !> Assemble a design and give it to a lane.
   subroutine assemble_lane(self, model, lane, fits, err)
@@ -191,7 +247,7 @@ contains
     type(error_type), allocatable, intent(out) :: err    !< allocated if it can't be assembled
     type(plan_type) :: plan
     type(state_type) :: state
-    integer :: i
+    logical :: found
 
     fits = is_simple(model)
     if (.not. fits) return
@@ -199,19 +255,41 @@ contains
       fits = time%intervals == base%intervals .and. .not. max(abs(time%start - base%start), abs(time%end - base%end)) > 0.0_wp
     end associate
     if (.not. fits) return
+    call self%starts%find(model, found)
+    if (found) then
+      fits = closes_well(self%starts%plan)
+      if (fits) call renew_lane(self%starts%plan, self%starts%state%q, lane, self%group, fits)
+      if (fits) call place_sources(model, self%starts%plan, lane, self%sources)
+      if (fits) return
+    end if
     call assemble_model(model, plan, state, err)
     fits = .not. allocated(err)
     if (.not. fits) return
     call leave_out_unrequested(plan, self%requested)
-    ! a gap far below what would be taken for an open chain
-    fits = fits_lanes(plan) .and. closed*plan%length < 0.1_wp*hidden_part*plan%least_length
-    if (.not. fits) return
-    call fill_lane(plan, state%q, lane, self%group, fits)
-    if (.not. fits) return
-    do i = 1, size(self%sources)
-      call place_source(model, plan, lane, self%sources(i))
-    end do
+    fits = fits_lanes(plan) .and. closes_well(plan)
+    if (fits) call fill_lane(plan, state%q, lane, self%group, fits)
+    if (fits) call place_sources(model, plan, lane, self%sources)
   end subroutine assemble_lane
+
+  !> Whether gaps that count as closed are far below those that would be taken for an open chain.
+  pure logical function closes_well(plan)
+    type(plan_type), intent(in) :: plan   !< the plan of the design
+
+    closes_well = closed*plan%length < 0.1_wp*hidden_part*plan%least_length
+  end function closes_well
+
+  !> Give a lane the numbers of the points of quantities.
+  subroutine place_sources(model, plan, lane, sources)
+    type(model_type), intent(in) :: model                !< the model of the design
+    type(plan_type), intent(in) :: plan                  !< its plan
+    integer, intent(in) :: lane                          !< number of the lane
+    type(column_source_type), intent(inout) :: sources(:)   !< of the quantities; get the numbers
+    integer :: i
+
+    do i = 1, size(sources)
+      call place_source(model, plan, lane, sources(i))
+    end do
+  end subroutine place_sources
 
   !> Give a lane the numbers of a point.
   subroutine place_source(model, plan, lane, source)
@@ -253,14 +331,14 @@ contains
     do l = 1, size(models)
       ! a model that could not be made has no drives
       same(l) = done(l)
-      if (same(l)) same(l) = drives_are_same(models(l), models(first))
+      if (same(l)) same(l) = drives_are_same(models(l), self%model)
     end do
     do i = 0, size(self%t) - 1
       if (mod(i, outputs_at_once) == outputs_at_once - 1 .and. present(interruption)) then
         if (interruption%is_wanted()) done = .false.
       end if
       h = self%t(i) - self%t(max(0, i - 1))
-      call drive_lanes(self, models, same, first, i, h, done)
+      call drive_lanes(self, models, same, i, h, done)
       if (.not. any(done)) return
       if (i == 0) then
         call begin_group(self%bits, self%group)
@@ -269,7 +347,7 @@ contains
       end if
       if (any(self%group%refused > 0.0_wp)) call leave_refused(self%group, self%sources, done)
       if (.not. any(done)) return
-      call keep_output(self, i)
+      call keep_output(self, i, h)
     end do
   end subroutine follow_group
 
@@ -305,55 +383,70 @@ contains
   end subroutine copy_sources
 
   !> Set the driven coordinates of all lanes at an output. A design whose drive has no value, or moves far in the step, is left.
-  subroutine drive_lanes(self, models, same, first, output, h, done)
+  subroutine drive_lanes(self, models, same, output, h, done)
     type(lane_runs_type), intent(inout) :: self       !< with designs in lanes
     type(model_type), intent(in) :: models(:)         !< (runs) their models
-    logical, intent(in) :: same(:)                    !< (runs) the drives are those of the first design
-    integer, intent(in) :: first                      !< number of the lane of that
+    logical, intent(in) :: same(:)                    !< (runs) the drives are those of the data file
     integer, intent(in) :: output                     !< number of the output, from 0
     real(wp), intent(in) :: h                         !< length of the step to it [s]
     logical, intent(inout) :: done(:)                 !< (runs) the lane has a design
-    real(wp) :: motion(3), way, way_of_first
-    integer :: i, l, s
+    real(wp) :: motion(4)
+    integer :: first, i, l, s
 
+    first = findloc(done, .true., dim=1)
+    if (first == 0) return
     associate (group => self%group)
-      do i = 1, size(models(first)%problem%drives)
+      do i = 1, size(self%drives, 3)
         ! the step of a coordinate is the same in all designs
-        s = findloc(group%coordinate, models(first)%problem%drives(i)%drive%coordinate, dim=1)
-        call move_drive(models(first)%problem%drives(i)%drive, self%t(output), h, motion, way_of_first)
-        group%q(:, s) = motion(1)
-        group%dq(:, s) = motion(2)
-        group%ddq(:, s) = motion(3)
+        s = findloc(group%steps%coordinate, self%model%problem%drives(i)%drive%coordinate, dim=1)
+        ! lanes without a design copy the first one
+        call move(first)
+        group%steps(s)%q = motion(1)
+        group%steps(s)%dq = motion(2)
+        group%steps(s)%ddq = motion(3)
+        if (all(same .or. .not. done)) then
+          if (motion(4) <= longest_drive*minval(group%steps(s)%unit)) cycle
+        end if
         do l = 1, size(models)
           if (.not. done(l)) cycle
-          way = way_of_first
-          if (.not. same(l)) then
-            call move_drive(models(l)%problem%drives(i)%drive, self%t(output), h, motion, way)
-            group%q(l, s) = motion(1)
-            group%dq(l, s) = motion(2)
-            group%ddq(l, s) = motion(3)
-          end if
-          done(l) = way <= longest_drive*group%unit(l, s)
+          call move(l)
+          group%steps(s)%q(l) = motion(1)
+          group%steps(s)%dq(l) = motion(2)
+          group%steps(s)%ddq(l) = motion(3)
+          done(l) = motion(4) <= longest_drive*group%steps(s)%unit(l)
         end do
       end do
     end associate
+
+  contains
+
+    !> Find the motion of the drive of a design.
+    subroutine move(lane)
+      integer, intent(in) :: lane   !< its lane
+
+      if (same(lane)) then
+        motion = self%drives(:, output, i)
+      else
+        call move_drive(models(lane)%problem%drives(i)%drive, self%t(output), h, motion)
+      end if
+    end subroutine move
   end subroutine drive_lanes
 
   !> The motion of a drive at a time, and a bound of its way in the step to it.
-  subroutine move_drive(drive, t, h, motion, way)
+  subroutine move_drive(drive, t, h, motion)
     class(law_type), intent(in) :: drive    !< the drive
     real(wp), intent(in) :: t               !< the time [s]
     real(wp), intent(in) :: h               !< length of the step to it [s]
-    real(wp), intent(out) :: motion(3)      !< coordinate, rate and acceleration; 0 where the drive has no value
-    real(wp), intent(out) :: way            !< the bound [rad, m]; beyond all bounds where the drive has no value
+    real(wp), intent(out) :: motion(4)      !< coordinate, rate and acceleration, 0 where the drive has no value; the bound, which is
+                                            !< then beyond all bounds
     type(error_type), allocatable :: err
 
     call drive%evaluate(t, motion(1), motion(2), motion(3), err)
-    way = 0.0_wp
-    if (.not. allocated(err) .and. abs(h) > 0.0_wp) way = abs(h)*drive%greatest_rate(t - h, h)
+    motion(4) = 0.0_wp
+    if (.not. allocated(err) .and. abs(h) > 0.0_wp) motion(4) = abs(h)*drive%greatest_rate(t - h, h)
     if (.not. allocated(err)) return
-    motion = 0.0_wp
-    way = huge(way)
+    motion(:3) = 0.0_wp
+    motion(4) = huge(h)
   end subroutine move_drive
 
   !> Whether two designs have the same drives.
@@ -378,25 +471,36 @@ contains
   end function drives_are_same
 
   !> Keep the columns of the quantities at an output.
-  subroutine keep_output(self, output)
+  subroutine keep_output(self, output, h)
     type(lane_runs_type), intent(inout) :: self    !< with the positions of the designs
     integer, intent(in) :: output                  !< its number, from 0
-    real(wp) :: motion(lanes, 0:2)
-    integer :: i, k, l
+    real(wp), intent(in) :: h                      !< time from the output before [s]
+    real(wp) :: motion(lanes, 0:2), turning(lanes), first(lanes, 0:2, 2)
+    integer :: i, l
 
+    first = 0.0_wp
     do i = 1, size(self%sources)
-      associate (source => self%sources(i), group => self%group)
+      associate (source => self%sources(i), group => self%group, series => self%series(:, :, :, i))
         if (source%step > 0) then
-          motion(:, 0) = group%q(:, source%step)
-          motion(:, 1) = group%dq(:, source%step)
-          motion(:, 2) = group%ddq(:, source%step)
+          motion(:, 0) = group%steps(source%step)%q
+          motion(:, 1) = group%steps(source%step)%dq
+          motion(:, 2) = group%steps(source%step)%ddq
         else
           call find_point(self%bits, group, source%frame, source%place, source%axis, source%origin, motion)
         end if
+        if (output == 0) then
+          self%range(:, 1, i) = huge(h)
+          self%range(:, 2, i) = -huge(h)
+          self%turnings(i, :) = 0
+          call keep_column(self%bits, 1.0_wp, source%factors, motion, first, self%range(:, :, i), turning)
+          series(:, :, 1) = first(:, :, 2)
+          cycle
+        end if
+        call keep_column(self%bits, h, source%factors, motion, series(:, :, output:output + 1), self%range(:, :, i), turning)
         do l = 1, lanes
-          do k = 0, 2
-            self%series(k, output, i, l) = motion(l, k)*source%factors(k)
-          end do
+          if (.not. turning(l) > 0.0_wp) cycle
+          self%turnings(i, l) = self%turnings(i, l) + 1
+          self%turning(self%turnings(i, l), i, l) = output
         end do
       end associate
     end do

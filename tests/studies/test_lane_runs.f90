@@ -7,7 +7,11 @@ module test_lane_runs
   use mech9_program_kind, only: kinematics
   use mech9_model, only: model_type
   use mech9_varied_document, only: varied_document_type
+  use mech9_plan, only: plan_type
+  use mech9_state, only: state_type
+  use mech9_explained_assembly, only: assemble_model
   use mech9_study_values, only: values_of_run
+  use mech9_lane_starts, only: lane_starts_type
   use mech9_run_maker, only: run_maker_type, made_run_type, most_runs
   use mech9_lane_runs, only: lane_runs_type, lane_failure_type
   use mech9_text_models, only: varied_from_text
@@ -51,6 +55,7 @@ contains
     if (tester%runs('four_bars')) call compare(tester, bars//turning//one_turn//quantities//lengths//drawn(27), 'four-bars', 27)
     if (tester%runs('wild_four_bars')) call wild_four_bars(tester)
     if (tester%runs('other_structures')) call other_structures(tester)
+    if (tester%runs('starts')) call starts(tester)
     if (tester%runs('any_company')) call any_company(tester)
     if (tester%runs('left_alone')) call left_alone(tester)
   end subroutine run
@@ -222,6 +227,82 @@ contains
                  '&parameter name=''rod'', sets=''pair(6).point(1)'', value=0.5, low=0.45, high=0.6'//uniform//drawn(17), &
                  'two chains', 17)
   end subroutine other_structures
+
+  !> Starts of designs that are found in a known plan, against their own assembly.
+  subroutine starts(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    character(len=*), parameter :: any_bars = &
+      '&parameter name=''crank'', sets=''pair(2).point(1)'', value=0.15, low=0.05, high=0.4'//uniform// &
+      '&parameter name=''ground'', sets=''pair(3).point(1)'', value=0.40, low=0.1, high=0.5'//uniform// &
+      '&parameter name=''rocker'', sets=''pair(4).point(1)'', value=0.30, low=0.1, high=0.5'//uniform
+    !> A linkage that is drawn closed where all coordinates are zero, and begins elsewhere.
+    character(len=*), parameter :: drawn_bars = &
+      '&mechanism links=4, coordinates=4 /'//nl//'&structure cq=1 /'//nl// &
+      '&pair coordinate=1, links=1,2, kind=''revolute'', axis=0,0,1 /'//nl// &
+      '&pair coordinate=2, links=2,3, kind=''revolute'', axis=0,0,1, point=0.15,0,0, moving_point=0,0,0 /'//nl// &
+      '&pair coordinate=3, links=1,4, kind=''revolute'', axis=0,0,1, point=0.40,0,0, moving_point=0,0,0 /'//nl// &
+      '&pair coordinate=4, links=4,3, kind=''revolute'', axis=0,0,1, point=0,0.30,0, moving_point=0.25,0.30,0 /'//nl// &
+      '&point name=''P'', link=3, position=0.20,0.10,0 /'//nl
+    !> The gap of some of these is above the part of the mechanism's size that counts as closed, that of others below.
+    character(len=*), parameter :: with_gaps = &
+      '&parameter name=''rocker'', sets=''pair(4).point(2)'', value=0.30, low=0.2994, high=0.3006'//uniform// &
+      '&parameter name=''angle'', sets=''drive.coefficients(1)'', value=0.4, low=-0.5, high=0.7'//uniform
+
+    call compare_starts(tester, bars//turning//one_turn//quantities//any_bars//drawn(200), 'four-bars', 10)
+    call compare_starts(tester, bars//turning//one_turn//quantities// &
+                        '&parameter name=''up'', sets=''pair(3).axis(3)'', value=1, low=-1, high=1, count=7 /'//nl// &
+                        '&study kind=''grid'' /', 'axes', 3)
+    call compare_starts(tester, drawn_bars//'&drive coordinate=1, kind=''polynomial'', coefficients=0.4,10 /'//nl//one_turn// &
+                        quantities//with_gaps//drawn(40), 'drawn closed, or nearly so', 5)
+    call compare(tester, drawn_bars//'&drive coordinate=1, kind=''polynomial'', coefficients=0.4,10 /'//nl//one_turn// &
+                 quantities//with_gaps//drawn(40), 'drawn closed, or nearly so', 20)
+  end subroutine starts
+
+  !> Compare the starts of a study's designs, where they are found in the plan of the data file, with their own: bit for bit.
+  subroutine compare_starts(tester, text, why, at_least)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    character(len=*), intent(in) :: text         !< of the data file
+    character(len=*), intent(in) :: why          !< its name
+    integer, intent(in) :: at_least              !< so many of the starts are found
+    type(varied_document_type) :: varied
+    type(model_type) :: model, one
+    type(plan_type) :: plan
+    type(state_type) :: state
+    type(lane_starts_type) :: known
+    type(error_type), allocatable :: err
+    real(wp), allocatable :: values(:)
+    integer :: i, s, starts_found
+    logical :: found
+
+    call varied_from_text(tester, text, kinematics, varied, model)
+    call assemble_model(model, plan, state, err)
+    call tester%no_error(err, why//': the design of the data file')
+    if (allocated(err)) return
+    call known%begin(plan)
+    allocate (values(size(model%parameters)))
+    starts_found = 0
+    do i = 1, model%request%study%runs
+      call values_of_run(model%request%study, model%parameters, i, values)
+      call varied%at(values, one, err)
+      if (allocated(err)) cycle
+      call known%find(one, found)
+      if (.not. found) cycle
+      starts_found = starts_found + 1
+      call assemble_model(one, plan, state, err)
+      call tester%no_error(err, why//': it closes in its own plan')
+      if (allocated(err)) cycle
+      call tester%is_true(.not. any(abs(known%state%q - state%q) > 0.0_wp), why//': the same start')
+      call tester%is_true(.not. abs(known%plan%length - plan%length) > 0.0_wp .and. &
+                          .not. any(abs(known%plan%unit_of - plan%unit_of) > 0.0_wp), why//': the same scales')
+      do s = 1, size(plan%planar%steps)
+        associate (step => plan%planar%steps(s), other => known%plan%planar%steps(s))
+          call tester%is_true(.not. any(abs([step%angle - other%angle, step%place - other%place, step%slide - other%slide]) &
+                                        > 0.0_wp), why//': the same numbers of a step')
+        end associate
+      end do
+    end do
+    call tester%is_true(starts_found >= at_least, why//': starts are found')
+  end subroutine compare_starts
 
   !> A run has the same bits alone and among others, and by all instructions that the processor has.
   subroutine any_company(tester)

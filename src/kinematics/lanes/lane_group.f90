@@ -9,54 +9,63 @@ module mech9_lane_group
   use mech9_planar_chain, only: planar_chain_type, new_planar_chain
   implicit none
   private
-  public :: lane_group_type, lane_block_type, new_lane_group, fits_lanes, fill_lane, copy_lane
+  public :: lane_group_type, lane_block_type, new_lane_group, fits_lanes, fill_lane, renew_lane, copy_lane
 
   !> Designs that stand side by side.
   integer, parameter, public :: lanes = 8
 
+  !> A step and its coordinate.
+  type :: lane_step_type
+    integer :: parent = 0                        !< frame from which it leads
+    integer :: coordinate = 0                    !< its coordinate
+    logical :: turns = .true.                    !< it turns; else it slides
+    real(wp) :: turn = 0.0_wp                    !< rotation about the normal per unit of q: 1, -1, or 0
+    ! numbers of the designs
+    real(wp) :: angle(lanes) = 0.0_wp            !< rotation at q = 0 [rad]
+    real(wp) :: place(lanes, 2) = 0.0_wp         !< its origin in the parent frame at q = 0 [m]
+    real(wp) :: slide(lanes, 2) = 0.0_wp         !< displacement of the origin in the parent frame per unit of q
+    real(wp) :: unit(lanes) = 1.0_wp             !< unit of the coordinate [rad, m]
+    ! motion
+    real(wp) :: q(lanes) = 0.0_wp                !< coordinate [rad, m]
+    real(wp) :: dq(lanes) = 0.0_wp               !< its rate
+    real(wp) :: ddq(lanes) = 0.0_wp              !< its acceleration
+    real(wp) :: last(lanes, 3) = 0.0_wp          !< coordinate, rate and acceleration at the last position
+    real(wp) :: higher(lanes, 3) = 0.0_wp        !< factors of h^3, h^4, h^5 of the polynomial that predicts
+    real(wp) :: cs(lanes, 2) = 0.0_wp            !< cosine and sine of the angle by which it turns
+  end type lane_step_type
+
+  !> A frame.
+  type :: lane_frame_type
+    real(wp) :: pose(lanes, 4) = 0.0_wp          !< cosine, sine, x, y [m]
+    real(wp) :: way(lanes, 2) = 0.0_wp           !< velocity of its origin per unit rate of a slide
+    real(wp) :: v(lanes, 3) = 0.0_wp             !< velocity [rad/s, m/s]
+    real(wp) :: a(lanes, 3) = 0.0_wp             !< acceleration [rad/s^2, m/s^2]
+  end type lane_frame_type
+
   !> A block: a closed chain with three unknowns, or steps that close none.
   type :: lane_block_type
-    integer :: first = 1                  !< its first step
-    integer :: last = 0                   !< its last step
-    integer :: closure = 0                !< number of its closure; 0: it closes no chain
-    integer :: ends(3) = 0                !< closing frame, target and base of the closure
-    integer :: stems(2) = 0               !< frames of other blocks at which the two branches of the loop begin
-    integer :: unknowns(3) = 0            !< steps of the unknown coordinates
-    integer, allocatable :: given(:)      !< steps of the loop whose coordinates are given
-    real(wp), allocatable :: signs(:)     !< (M) of each step in the loop: 1 or -1; 0: not in it
+    integer :: first = 1                         !< its first step
+    integer :: last = 0                          !< its last step
+    integer :: closure = 0                       !< number of its closure; 0: it closes no chain
+    integer :: ends(3) = 0                       !< closing frame, target and base of the closure
+    integer :: stems(2) = 0                      !< frames of other blocks at which the two branches of the loop begin
+    integer :: unknowns(3) = 0                   !< steps of the unknown coordinates
+    integer, allocatable :: given(:)             !< steps of the loop whose coordinates are given
+    real(wp), allocatable :: signs(:)            !< (M) of each step in the loop: 1 or -1; 0: not in it
+    real(wp) :: goal(lanes, 4) = 0.0_wp          !< cosine, sine and place of the closing frame in the target
+    real(wp) :: jacobian(lanes, 3, 3) = 0.0_wp   !< of the equations by the unknowns, each in its unit
+    real(wp) :: before(lanes, 3, 3) = 0.0_wp     !< the same at the last position
+    real(wp) :: inverse(lanes, 3, 3) = 0.0_wp    !< inverse of the Jacobian
+    real(wp) :: volume(lanes) = 0.0_wp           !< determinant of the Jacobian at the last position
+    real(wp) :: largest_pivot(lanes) = 0.0_wp    !< largest least pivot of all positions
   end type lane_block_type
 
-  !> The designs of a group. Arrays have lanes as their first index.
+  !> The designs of a group. Arrays of fixed extents, with lanes as their first index, have addresses that the compiler knows.
   type :: lane_group_type
-    integer :: m = 0                                     !< number of steps
     type(lane_block_type), allocatable :: blocks(:)      !< in the order of execution
-    integer, allocatable :: parent(:)                    !< (M) frame from which each step leads
-    integer, allocatable :: coordinate(:)                !< (M) coordinate of each step
-    logical, allocatable :: turns(:)                     !< (M) the step turns; else it slides
-    real(wp), allocatable :: turn(:)                     !< (M) rotation about the normal per unit of q: 1, -1, or 0
-    ! numbers of the designs
-    real(wp), allocatable :: angle(:, :)                 !< (lanes,M) rotation of each step at q = 0 [rad]
-    real(wp), allocatable :: place(:, :, :)              !< (lanes,2,M) its origin in the parent frame at q = 0 [m]
-    real(wp), allocatable :: slide(:, :, :)              !< (lanes,2,M) displacement of the origin in the parent frame per unit of q
-    real(wp), allocatable :: goal(:, :, :)               !< (lanes,4,closures) cosine, sine and place of the closing frame in the target
-    real(wp), allocatable :: unit(:, :)                  !< (lanes,M) unit of each step's coordinate [rad, m]
+    type(lane_step_type), allocatable :: steps(:)        !< (M)
+    type(lane_frame_type), allocatable :: frames(:)      !< (0:M)
     real(wp) :: per_length(lanes) = 1.0_wp               !< one over the mechanism's size [1/m]
-    ! motion
-    real(wp), allocatable :: q(:, :)                     !< (lanes,M) coordinates of the steps [rad, m]
-    real(wp), allocatable :: dq(:, :)                    !< (lanes,M) their rates
-    real(wp), allocatable :: ddq(:, :)                   !< (lanes,M) their accelerations
-    real(wp), allocatable :: last(:, :, :)               !< (lanes,3,M) coordinate, rate and acceleration at the last position
-    real(wp), allocatable :: higher(:, :, :)             !< (lanes,3,M) factors of h^3, h^4, h^5 of the polynomial that predicts
-    real(wp), allocatable :: cs(:, :, :)                 !< (lanes,2,M) cosine and sine of the angle by which each step turns
-    real(wp), allocatable :: pose(:, :, :)               !< (lanes,4,0:M) cosine, sine, x, y of each frame [m]
-    real(wp), allocatable :: way(:, :, :)                !< (lanes,2,M) velocity of each frame's origin per unit rate of a slide
-    real(wp), allocatable :: v(:, :, :)                  !< (lanes,3,0:M) velocity of each frame [rad/s, m/s]
-    real(wp), allocatable :: a(:, :, :)                  !< (lanes,3,0:M) acceleration of each frame [rad/s^2, m/s^2]
-    real(wp), allocatable :: jacobian(:, :, :, :)        !< (lanes,3,3,blocks) of the equations by the unknowns, each in its unit
-    real(wp), allocatable :: before(:, :, :, :)          !< (lanes,3,3,blocks) the same at the last position
-    real(wp), allocatable :: inverse(:, :, :, :)         !< (lanes,3,3,blocks) inverse of the Jacobian
-    real(wp), allocatable :: volume(:, :)                !< (lanes,blocks) determinant of the Jacobian at the last position
-    real(wp), allocatable :: largest_pivot(:, :)         !< (lanes,blocks) largest least pivot of all positions
     real(wp) :: refused(lanes) = 0.0_wp                  !< above 0: the motion of the lane could not be followed
   end type lane_group_type
 
@@ -86,28 +95,24 @@ contains
   pure subroutine new_lane_group(plan, group)
     type(plan_type), intent(in) :: plan                 !< the plan
     type(lane_group_type), intent(out) :: group         !< without designs
-    integer :: b, m, n
+    integer :: b, s
 
-    m = plan%n_coordinates
-    n = size(plan%blocks)
-    group%m = m
-    allocate (group%blocks(n))
-    group%parent = plan%planar%steps%parent
-    group%coordinate = plan%planar%steps%coordinate
-    group%turns = plan%planar%steps%turns
-    group%turn = plan%planar%steps%turn
-    do b = 1, n
+    allocate (group%blocks(size(plan%blocks)), group%steps(plan%n_coordinates), group%frames(0:plan%n_coordinates))
+    do s = 1, plan%n_coordinates
+      associate (step => group%steps(s), planar => plan%planar%steps(s))
+        step%parent = planar%parent
+        step%coordinate = planar%coordinate
+        step%turns = planar%turns
+        step%turn = planar%turn
+        step%cs(:, 1) = 1.0_wp
+      end associate
+    end do
+    do b = 1, size(plan%blocks)
       call take_block(plan, plan%blocks(b), group%blocks(b))
     end do
-    allocate (group%angle(lanes, m), group%place(lanes, 2, m), group%slide(lanes, 2, m), group%unit(lanes, m), &
-              group%goal(lanes, 4, size(plan%planar%closures)), source=0.0_wp)
-    allocate (group%q(lanes, m), group%dq(lanes, m), group%ddq(lanes, m), group%last(lanes, 3, m), group%higher(lanes, 3, m), &
-              group%cs(lanes, 2, m), group%pose(lanes, 4, 0:m), group%way(lanes, 2, m), group%v(lanes, 3, 0:m), &
-              group%a(lanes, 3, 0:m), source=0.0_wp)
-    allocate (group%jacobian(lanes, 3, 3, n), group%before(lanes, 3, 3, n), group%inverse(lanes, 3, 3, n), &
-              group%volume(lanes, n), group%largest_pivot(lanes, n), source=0.0_wp)
-    group%pose(:, 1, :) = 1.0_wp
-    group%cs(:, 1, :) = 1.0_wp
+    do s = 0, plan%n_coordinates
+      group%frames(s)%pose(:, 1) = 1.0_wp
+    end do
   end subroutine new_lane_group
 
   !> Take the structure of a block.
@@ -139,37 +144,52 @@ contains
     type(lane_group_type), intent(inout) :: group       !< the group
     logical, intent(out) :: fits                        !< the lane has the design
     type(lane_block_type) :: block
-    integer :: b, c, s
+    integer :: b
 
-    fits = fits_lanes(plan) .and. plan%n_coordinates == group%m .and. size(plan%blocks) == size(group%blocks)
-    if (fits) fits = size(plan%planar%closures) == size(group%goal, 3)
+    fits = fits_lanes(plan) .and. plan%n_coordinates == size(group%steps) .and. size(plan%blocks) == size(group%blocks)
     if (.not. fits) return
     associate (steps => plan%planar%steps)
-      fits = all(steps%parent == group%parent .and. steps%coordinate == group%coordinate .and. (steps%turns .eqv. group%turns) &
-                 .and. .not. abs(steps%turn - group%turn) > 0.0_wp)
+      fits = all(steps%parent == group%steps%parent .and. steps%coordinate == group%steps%coordinate)
     end associate
     do b = 1, size(group%blocks)
       if (.not. fits) return
       call take_block(plan, plan%blocks(b), block)
       fits = is_same(block, group%blocks(b))
     end do
-    do s = 1, group%m
-      associate (step => plan%planar%steps(s))
-        group%angle(lane, s) = step%angle
-        group%place(lane, :, s) = step%place
-        group%slide(lane, :, s) = step%slide
-        group%unit(lane, s) = plan%unit_of(step%coordinate)
-        group%q(lane, s) = q(step%coordinate)
+    call renew_lane(plan, q, lane, group, fits)
+  end subroutine fill_lane
+
+  !> Give a lane the numbers of a design, whose plan has the blocks and frames of the group, and its closed position. `fits` is false
+  !> where its axes have other directions.
+  pure subroutine renew_lane(plan, q, lane, group, fits)
+    type(plan_type), intent(in) :: plan                 !< plan of the design
+    real(wp), intent(in) :: q(:)                        !< (M) its coordinates at the start [rad, m]
+    integer, intent(in) :: lane                         !< number of the lane
+    type(lane_group_type), intent(inout) :: group       !< the group
+    logical, intent(out) :: fits                        !< the lane has the design
+    integer :: b, s
+
+    fits = .false.
+    do s = 1, size(group%steps)
+      associate (step => plan%planar%steps(s), taken => group%steps(s))
+        if ((step%turns .neqv. taken%turns) .or. abs(step%turn - taken%turn) > 0.0_wp) return
+        taken%angle(lane) = step%angle
+        taken%place(lane, :) = step%place
+        taken%slide(lane, :) = step%slide
+        taken%unit(lane) = plan%unit_of(step%coordinate)
+        taken%q(lane) = q(step%coordinate)
       end associate
     end do
-    do c = 1, size(plan%planar%closures)
-      associate (closure => plan%planar%closures(c))
-        group%goal(lane, :, c) = [closure%cosine, closure%sine, closure%place]
+    fits = .true.
+    do b = 1, size(group%blocks)
+      if (group%blocks(b)%closure == 0) cycle
+      associate (closure => plan%planar%closures(group%blocks(b)%closure))
+        group%blocks(b)%goal(lane, :) = [closure%cosine, closure%sine, closure%place]
       end associate
     end do
     group%per_length(lane) = 1.0_wp/plan%planar%length
     group%refused(lane) = 0.0_wp
-  end subroutine fill_lane
+  end subroutine renew_lane
 
   !> Whether two blocks have the same structure.
   pure logical function is_same(a, b)
@@ -187,27 +207,48 @@ contains
     integer, intent(in) :: to                        !< number of the other one
     type(lane_group_type), intent(inout) :: group    !< the group
 
-    group%angle(to, :) = group%angle(from, :)
-    group%place(to, :, :) = group%place(from, :, :)
-    group%slide(to, :, :) = group%slide(from, :, :)
-    group%goal(to, :, :) = group%goal(from, :, :)
-    group%unit(to, :) = group%unit(from, :)
+    integer :: b, s
+
     group%per_length(to) = group%per_length(from)
-    group%q(to, :) = group%q(from, :)
-    group%dq(to, :) = group%dq(from, :)
-    group%ddq(to, :) = group%ddq(from, :)
-    group%last(to, :, :) = group%last(from, :, :)
-    group%higher(to, :, :) = group%higher(from, :, :)
-    group%cs(to, :, :) = group%cs(from, :, :)
-    group%pose(to, :, :) = group%pose(from, :, :)
-    group%way(to, :, :) = group%way(from, :, :)
-    group%v(to, :, :) = group%v(from, :, :)
-    group%a(to, :, :) = group%a(from, :, :)
-    group%jacobian(to, :, :, :) = group%jacobian(from, :, :, :)
-    group%before(to, :, :, :) = group%before(from, :, :, :)
-    group%inverse(to, :, :, :) = group%inverse(from, :, :, :)
-    group%volume(to, :) = group%volume(from, :)
-    group%largest_pivot(to, :) = group%largest_pivot(from, :)
     group%refused(to) = group%refused(from)
+    do s = 1, size(group%steps)
+      call copy_step(group%steps(s))
+    end do
+    do s = 0, ubound(group%frames, 1)
+      associate (frame => group%frames(s))
+        frame%pose(to, :) = frame%pose(from, :)
+        frame%way(to, :) = frame%way(from, :)
+        frame%v(to, :) = frame%v(from, :)
+        frame%a(to, :) = frame%a(from, :)
+      end associate
+    end do
+    do b = 1, size(group%blocks)
+      associate (block => group%blocks(b))
+        block%goal(to, :) = block%goal(from, :)
+        block%jacobian(to, :, :) = block%jacobian(from, :, :)
+        block%before(to, :, :) = block%before(from, :, :)
+        block%inverse(to, :, :) = block%inverse(from, :, :)
+        block%volume(to) = block%volume(from)
+        block%largest_pivot(to) = block%largest_pivot(from)
+      end associate
+    end do
+
+  contains
+
+    !> Copy the numbers and the motion of a step.
+    pure subroutine copy_step(step)
+      type(lane_step_type), intent(inout) :: step   !< the step
+
+      step%angle(to) = step%angle(from)
+      step%place(to, :) = step%place(from, :)
+      step%slide(to, :) = step%slide(from, :)
+      step%unit(to) = step%unit(from)
+      step%q(to) = step%q(from)
+      step%dq(to) = step%dq(from)
+      step%ddq(to) = step%ddq(from)
+      step%last(to, :) = step%last(from, :)
+      step%higher(to, :) = step%higher(from, :)
+      step%cs(to, :) = step%cs(from, :)
+    end subroutine copy_step
   end subroutine copy_lane
 end module mech9_lane_group

@@ -2,13 +2,15 @@
 module mech9_lane_motion
   use mech9_kinds, only: wp
   use mech9_lane_group, only: lane_group_type, lanes
-  use mech9_lane_motion_sse2, only: begin_sse2 => begin_in_lanes, go_on_sse2 => go_on_in_lanes, point_sse2 => point_in_lanes
-  use mech9_lane_motion_avx2, only: begin_avx2 => begin_in_lanes, go_on_avx2 => go_on_in_lanes, point_avx2 => point_in_lanes
+  use mech9_lane_motion_sse2, only: begin_sse2 => begin_in_lanes, go_on_sse2 => go_on_in_lanes, point_sse2 => point_in_lanes, &
+    keep_sse2 => keep_in_lanes
+  use mech9_lane_motion_avx2, only: begin_avx2 => begin_in_lanes, go_on_avx2 => go_on_in_lanes, point_avx2 => point_in_lanes, &
+    keep_avx2 => keep_in_lanes
   use mech9_lane_motion_avx512, only: begin_avx512 => begin_in_lanes, go_on_avx512 => go_on_in_lanes, &
-    point_avx512 => point_in_lanes
+    point_avx512 => point_in_lanes, keep_avx512 => keep_in_lanes
   implicit none
   private
-  public :: begin_group, go_on_with_group, find_point
+  public :: begin_group, go_on_with_group, find_point, keep_column
 
 contains
 
@@ -53,7 +55,7 @@ contains
     real(wp), intent(in) :: origin(lanes)            !< component of the origin of frame 0 [m]
     real(wp), intent(inout) :: motion(lanes, 0:2)    !< gets the component of position, velocity and acceleration [m, m/s, m/s^2]
 
-    associate (pose => group%pose(:, :, frame), v => group%v(:, :, frame), a => group%a(:, :, frame))
+    associate (pose => group%frames(frame)%pose, v => group%frames(frame)%v, a => group%frames(frame)%a)
       select case (bits)
       case (512)
         call point_avx512(pose, v, a, place, axis, origin, motion)
@@ -64,4 +66,24 @@ contains
       end select
     end associate
   end subroutine find_point
+
+  !> Keep a column with its derivatives, and find out where it may have a turning point since the output before.
+  pure subroutine keep_column(bits, h, factors, motion, kept, range, turning)
+    integer, intent(in) :: bits                      !< of the vector registers that are used: 512, 256, or any others
+    real(wp), intent(in) :: h                        !< time from the output before [s]
+    real(wp), intent(in) :: factors(0:2)             !< from the units of the motion to numbers whose derivatives are the next ones
+    real(wp), intent(in) :: motion(lanes, 0:2)       !< the column, its rate and its acceleration
+    real(wp), intent(inout) :: kept(lanes, 0:2, 2)   !< the numbers of the output before; second, gets those of this one
+    real(wp), intent(inout) :: range(lanes, 2)       !< least and largest number so far
+    real(wp), intent(inout) :: turning(lanes)        !< 1 where the rate may change its sign, else 0
+
+    select case (bits)
+    case (512)
+      call keep_avx512(h, factors, motion, kept, range, turning)
+    case (256)
+      call keep_avx2(h, factors, motion, kept, range, turning)
+    case default
+      call keep_sse2(h, factors, motion, kept, range, turning)
+    end select
+  end subroutine keep_column
 end module mech9_lane_motion

@@ -9,7 +9,7 @@ module mech9_lane_motion_sse2
   use mech9_lane_tolerances, only: clear_start, closed, least_square, least_volume, longest_change, most_iterations, small_sine
   implicit none
   private
-  public :: begin_in_lanes, go_on_in_lanes, point_in_lanes
+  public :: begin_in_lanes, go_on_in_lanes, point_in_lanes, keep_in_lanes
 
 contains
 
