@@ -8,12 +8,19 @@ module mech9_recorded_branches
   use mech9_simulation, only: interruption_type
   use mech9_explanation, only: explain
   use mech9_varied_document, only: varied_document_type
-  use mech9_branches, only: branches_found_type, find_branches
+  use mech9_branches, only: branches_found_type, find_branches, columns_of_branches
   use mech9_branches_report, only: add_branches
+  use mech9_data_file, only: data_file_type
   use mech9_checked_mechanism, only: checked_mechanism_type
   implicit none
   private
-  public :: find_position_branches
+  public :: find_position_branches, list_columns, recorded_branches_type
+
+  !> The branches over a parameter of a data file.
+  type, extends(branches_found_type) :: recorded_branches_type
+  contains
+    procedure :: find
+  end type recorded_branches_type
 
 contains
 
@@ -56,4 +63,32 @@ contains
     call texts_of_one_length(of_units, units)
     call mechanism%point_at(err)
   end subroutine find_position_branches
+
+  !> Find the branches over a parameter of a data file. Fails as the option --branch does, with the branches that were found before.
+  subroutine find(self, given, parameter, err, interruption)
+    class(recorded_branches_type), intent(inout) :: self             !< new ones
+    class(data_file_type), intent(inout), target :: given            !< the data file, with its variable model
+    character(len=*), intent(in) :: parameter                        !< its name
+    type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
+    class(interruption_type), intent(in), optional :: interruption   !< is asked whether the work shall stop
+
+    call find_branches(given%model, given%variable, parameter, self%branches_found_type, err, interruption)
+  end subroutine find
+
+  !> List the names of all columns that the table of branches may have; none where there is no such parameter.
+  subroutine list_columns(given, parameter, names)
+    class(data_file_type), intent(in) :: given                 !< the data file
+    character(len=*), intent(in) :: parameter                  !< name of the parameter
+    type(string_type), allocatable, intent(out) :: names(:)    !< of the columns
+    integer :: i
+
+    do i = 1, size(given%model%parameters)
+      if (given%model%parameters(i)%name /= parameter) cycle
+      associate (columns => columns_of_branches(given%model, given%model%parameters(i), .true., .true.))
+        names = columns%names(:columns%count)
+      end associate
+      return
+    end do
+    allocate (names(0))
+  end subroutine list_columns
 end module mech9_recorded_branches

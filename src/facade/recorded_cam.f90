@@ -13,10 +13,19 @@ module mech9_recorded_cam
   use mech9_report_parts, only: add_part_names
   use mech9_cam_report, only: add_cam
   use mech9_model_motion, only: model_motion_type
+  use mech9_data_file, only: data_file_type
   use mech9_checked_mechanism, only: checked_mechanism_type
   implicit none
   private
-  public :: find_cam
+  public :: find_cam, recorded_cam_type
+
+  !> The profile of a cam of a data file.
+  type, extends(cam_profile_type) :: recorded_cam_type
+    integer :: number = 0    !< of the cam, in the order of the groups
+  contains
+    procedure :: find
+    procedure :: list_rows
+  end type recorded_cam_type
 
 contains
 
@@ -62,4 +71,30 @@ contains
     call texts_of_one_length(of_units, units)
     call mechanism%point_at(err)
   end subroutine find_cam
+
+  !> Find the profile of a cam. Fails with exit_data where there is none, and as a driven run does.
+  subroutine find(self, given, number, err)
+    class(recorded_cam_type), intent(inout) :: self        !< gets the profile
+    class(data_file_type), intent(in), target :: given     !< the data file, with its motion assembled
+    integer, intent(in) :: number                          !< of the cam, which there is
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+
+    self%number = number
+    associate (cam => given%model%request%cams(number), motion => given%run%motion)
+      call find_profile(given%model, motion%plan, motion%start, cam, self%cam_profile_type, err)
+      if (.not. allocated(err)) call judge_cam(given%model, number, self%cam_profile_type, err)
+      call add_place(err, place=cam%place)
+    end associate
+  end subroutine find
+
+  !> List the rows of its table, with a row for each output at which the follower moves against the cam.
+  subroutine list_rows(self, given, names, units, rows)
+    class(recorded_cam_type), intent(in) :: self               !< the profile
+    class(data_file_type), intent(in) :: given                 !< the data file
+    type(string_type), allocatable, intent(out) :: names(:)    !< (columns)
+    type(string_type), allocatable, intent(out) :: units(:)    !< (columns)
+    real(wp), allocatable, intent(out) :: rows(:, :)           !< (columns,rows)
+
+    call list_cam_rows(given%model%mechanism, given%model%request%cams(self%number), self%cam_profile_type, names, units, rows)
+  end subroutine list_rows
 end module mech9_recorded_cam

@@ -13,10 +13,11 @@ module mech9_recorded_linear
   use mech9_linear_motion, only: linear_motion_type, find_linear_motion
   use mech9_linear_names, only: name_linear_system, linear_columns
   use mech9_state_space, only: state_space_type, find_state_space
+  use mech9_data_file, only: data_file_type
   use mech9_checked_mechanism, only: checked_mechanism_type
   implicit none
   private
-  public :: linear_system_type, find_linear_system, linear_along_type, find_linear_along
+  public :: linear_system_type, find_linear_system, linear_along_type, find_linear_along, recorded_linear_motion_type
 
   !> Inertia x'' + damping x' + stiffness x = u in SI units, over the n free coordinates, and x' = A x + B u, y = C x + D u, where x
   !> has the coordinates, their rates and the states of motors.
@@ -44,7 +45,24 @@ module mech9_recorded_linear
     real(wp), allocatable :: rows(:, :)                   !< (columns,times)
   end type linear_along_type
 
+  !> The linearised equations of motion along the motion of a data file.
+  type, extends(linear_motion_type) :: recorded_linear_motion_type
+  contains
+    procedure :: find
+  end type recorded_linear_motion_type
+
 contains
+
+  !> Linearise the equations of motion along the motion of a data file. Fails as find_linear_along does; the error is not explained.
+  subroutine find(self, given, times, err, interruption)
+    class(recorded_linear_motion_type), intent(inout) :: self        !< new ones
+    class(data_file_type), intent(in) :: given                       !< the data file
+    real(wp), intent(in) :: times(:)                                 !< in the order of the motion [s]; none: all outputs of &time
+    type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
+    class(interruption_type), intent(in), optional :: interruption   !< is asked whether the motion shall stop
+
+    call find_linear_motion(given%model, times, self%linear_motion_type, err, interruption)
+  end subroutine find
 
   !> Linearise the equations of motion about the equilibrium to which the start leads. Fails with exit_data where nothing can come
   !> to rest, with exit_assembly where there is no equilibrium.

@@ -3,7 +3,7 @@ module mech9_recorded_optimum
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_usage
   use mech9_text, only: string_type, texts_of_one_length
-  use mech9_result_units, only: unit_of_parameter
+  use mech9_result_units, only: name_parameters
   use mech9_model, only: model_type
   use mech9_simulation, only: interruption_type
   use mech9_user_calls, only: calls_user_procedures
@@ -103,13 +103,10 @@ contains
     type(recorded_optimum_type), intent(inout) :: self   !< gets them
     type(model_type), intent(in) :: model                !< the model
     type(optimum_search_type), intent(in) :: search      !< made
-    type(string_type) :: names(size(model%parameters)), units(size(model%parameters))
+    type(string_type), allocatable :: names(:), units(:)
     integer :: i
 
-    do i = 1, size(names)
-      names(i)%text = model%parameters(i)%name
-      units(i)%text = trim(unit_of_parameter(model%mechanism, model%parameters(i)))
-    end do
+    call name_parameters(model%mechanism, model%parameters, names, units)
     call texts_of_one_length(names, self%parameter_names)
     call texts_of_one_length(units, self%parameter_units)
     associate (found => search%synthesis)

@@ -9,10 +9,13 @@ module mech9_recorded_rest
   use mech9_columns, only: columns_type
   use mech9_rest, only: rest_type, is_interruption
   use mech9_equilibrium_rows, only: columns_of_equilibria, rows_of_equilibria, columns_of_modes, rows_of_modes
+  use mech9_film, only: film_type
+  use mech9_force_record, only: force_record_type
+  use mech9_data_file, only: data_file_type
   use mech9_checked_mechanism, only: checked_mechanism_type
   implicit none
   private
-  public :: recorded_rest_type
+  public :: recorded_rest_type, rest_of_file_type
 
   !> Columns have the names, units and order of the tables of mech9d.
   type :: recorded_rest_type
@@ -24,7 +27,58 @@ module mech9_recorded_rest
     procedure :: find_modes
   end type recorded_rest_type
 
+  !> The equilibria of a data file, with the numbers that a program writes of them.
+  type, extends(rest_type) :: rest_of_file_type
+    type(columns_type) :: columns                !< of the rows
+    real(wp), allocatable :: rows(:, :)          !< (columns,rows) a row for each equilibrium or mode
+    type(force_record_type) :: forces            !< with the components that are unique, once these are judged
+    type(film_type) :: film                      !< of one mode
+  contains
+    procedure :: list_rows
+    procedure :: judge_forces
+    procedure :: take_film
+    procedure, nopass :: stops_by => is_interruption
+  end type rest_of_file_type
+
 contains
+
+  !> List the equilibria, or the modes of the first one, as rows. Fails where forces cannot be found.
+  subroutine list_rows(self, given, of_modes, err)
+    class(rest_of_file_type), intent(inout) :: self        !< with its equilibria; gets columns and rows
+    class(data_file_type), intent(in) :: given             !< the data file
+    logical, intent(in) :: of_modes                        !< rows are those of modes
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+
+    if (of_modes) then
+      self%columns = columns_of_modes(given%model%mechanism)
+      call rows_of_modes(self%equilibria(1), self%rows)
+    else
+      self%columns = columns_of_equilibria(given%model)
+      call rows_of_equilibria(given%model, self%columns, self%equilibria, self%rows, err)
+    end if
+  end subroutine list_rows
+
+  !> Take the positions of one period of a mode of the first equilibrium.
+  subroutine take_film(self, given, mode, err)
+    class(rest_of_file_type), intent(inout) :: self        !< with its modes; gets the positions
+    class(data_file_type), intent(in) :: given             !< the data file
+    integer, intent(in) :: mode                            !< number of the mode
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    type(film_type) :: film
+
+    call self%film_mode(given%model, mode, film, err)
+    self%film = film
+  end subroutine take_film
+
+  !> Find which components of the forces in pairs are unique in the first equilibrium, if any are recorded.
+  subroutine judge_forces(self, given)
+    class(rest_of_file_type), intent(inout) :: self        !< with its equilibria; gets the components
+    class(data_file_type), intent(in) :: given             !< the data file
+
+    associate (resting => self%equilibria(1)%resting)
+      call self%forces%judge(given%model, resting%plan, resting%state)
+    end associate
+  end subroutine judge_forces
 
   !> Find the equilibrium to which the start leads, or those of many random starts. Fails with exit_data where nothing can come to
   !> rest, with exit_assembly where there is no equilibrium, and with exit_interrupted where it is stopped; the equilibria that were

@@ -5,7 +5,7 @@ module mech9_recorded_study
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: string_type, texts_of_one_length
-  use mech9_result_units, only: unit_of_parameter
+  use mech9_result_units, only: name_parameters
   use mech9_model, only: model_type
   use mech9_simulation, only: interruption_type
   use mech9_quantity_record, only: quantity_record_type
@@ -179,12 +179,11 @@ contains
     type(recorded_study_type), intent(inout) :: self         !< the study
     type(model_type), intent(in) :: model                    !< with parameters
     type(quantity_record_type), intent(in) :: quantities     !< knows the units of their columns
-    type(string_type) :: parameter_units(size(self%parameter_units)), quantity_units(size(self%quantity_units))
+    type(string_type), allocatable :: parameters(:), parameter_units(:)
+    type(string_type) :: quantity_units(size(self%quantity_units))
     integer :: i
 
-    do i = 1, size(parameter_units)
-      parameter_units(i)%text = trim(unit_of_parameter(model%mechanism, model%parameters(i)))
-    end do
+    call name_parameters(model%mechanism, model%parameters, parameters, parameter_units)
     do i = 1, size(quantity_units)
       quantity_units(i)%text = trim(quantities%unit_of(i))
     end do

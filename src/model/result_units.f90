@@ -1,14 +1,15 @@
 !> The units of coordinates and of parameters in results and messages, which are those of the data file.
 module mech9_result_units
   use mech9_kinds, only: wp
-  use mech9_text, only: to_text
+  use mech9_text, only: string_type, to_text
   use mech9_units, only: longest_unit
   use mech9_pair, only: pair_type
   use mech9_mechanism, only: mechanism_type
   use mech9_parameter, only: parameter_type, parameter_target_type
   implicit none
   private
-  public :: si_unit, si_force, unit_of, unit_name, rate_unit_of, rate_unit_name, force_unit_name, unit_of_parameter, length_text
+  public :: si_unit, si_force, unit_of, unit_name, rate_unit_of, rate_unit_name, force_unit_name, unit_of_parameter, &
+    name_parameters, length_text
   public :: longest_unit, impulse_unit_of, inertia_unit_of, inertia_unit_name
 
 contains
@@ -141,6 +142,21 @@ contains
       if (unit /= unit_of_target(mechanism, parameter%targets(i))) unit = ''
     end do
   end function unit_of_parameter
+
+  !> Names and units of parameters, in their order.
+  pure subroutine name_parameters(mechanism, parameters, names, units)
+    type(mechanism_type), intent(in) :: mechanism               !< the mechanism
+    type(parameter_type), intent(in) :: parameters(:)           !< the parameters
+    type(string_type), allocatable, intent(out) :: names(:)     !< (parameters)
+    type(string_type), allocatable, intent(out) :: units(:)     !< (parameters) empty where none is known
+    integer :: i
+
+    allocate (names(size(parameters)), units(size(parameters)))
+    do i = 1, size(parameters)
+      names(i)%text = parameters(i)%name
+      units(i)%text = trim(unit_of_parameter(mechanism, parameters(i)))
+    end do
+  end subroutine name_parameters
 
   !> Name of the unit of a number of the data file; empty where it is not known.
   pure character(len=longest_unit) function unit_of_target(mechanism, target) result(unit)

@@ -14,7 +14,7 @@ module mech9_row_source
   use mech9_sensitivity, only: sensitivity_type, find_waiting
   use mech9_columns, only: columns_type, kinematic_columns
   use mech9_contact_columns, only: append_contacts, fill_contacts
-  use mech9_result_units, only: unit_of_parameter
+  use mech9_result_units, only: name_parameters
   use mech9_applied_forces, only: applied_forces_type
   use mech9_touching_forces, only: touching_forces_type
   use mech9_film, only: film_type
@@ -116,13 +116,12 @@ contains
     class(row_source_type), intent(inout) :: self                   !< the row source
     class(variable_model_type), intent(inout), target :: variable   !< the model as a function of its parameters; outlives the run
     type(error_type), allocatable, intent(out) :: err               !< allocated if it failed
-    type(string_type), dimension(size(self%simulation%model%parameters)) :: names, units
+    type(string_type), allocatable :: names(:), units(:)
     integer :: i
 
-    do i = 1, size(names)
-      names(i)%text = self%simulation%model%parameters(i)%name
-      units(i)%text = trim(unit_of_parameter(self%simulation%model%mechanism, self%simulation%model%parameters(i)))
-    end do
+    associate (model => self%simulation%model)
+      call name_parameters(model%mechanism, model%parameters, names, units)
+    end associate
     allocate (self%sensitivity)
     call self%simulation%begin_sensitivity(variable, self%columns%derivatives, self%sensitivity, err)
     if (allocated(err)) return

@@ -9,6 +9,10 @@ module mech9_design_motion
   use mech9_frame_motion, only: point_motion
   use mech9_run, only: run_type
   use mech9_simulation, only: interruption_type
+  use mech9_text, only: to_text
+  use mech9_point, only: point_type
+  use mech9_objective, only: function_objective
+  use mech9_synthesis, only: synthesis_type
   use mech9_film, only: film_type, new_film
   implicit none
   private
@@ -16,9 +20,12 @@ module mech9_design_motion
 
   type :: design_motion_type
     class(model_type), allocatable :: model   !< with the values of the design, from the positions of its assembly
+    class(model_type), allocatable :: shown   !< the same with targets of the search as points of link 1, for drawings
     class(run_type), allocatable :: run       !< with its motion assembled
+    type(film_type) :: film                   !< of the run, once it is made
   contains
     procedure :: visit
+    procedure :: show_targets
     procedure :: make_film
   end type design_motion_type
 
@@ -76,12 +83,31 @@ contains
     end do
   end subroutine visit
 
-  !> Make a film of the run. Points of link 1 are shown with it.
-  subroutine make_film(self, shown, interruption, film, err)
-    class(design_motion_type), intent(inout), target :: self  !< the motion
-    type(model_type), intent(in) :: shown                     !< the model with other points
+  !> Add the places of targets to the model of drawings as points of link 1, named by their numbers within their objective.
+  subroutine show_targets(self, synthesis, most)
+    class(design_motion_type), intent(inout) :: self          !< the motion; it gets the model of drawings
+    type(synthesis_type), intent(in) :: synthesis             !< with the targets
+    integer, intent(in) :: most                               !< of more targets the first ones are shown
+    type(point_type) :: point
+    integer :: i
+
+    if (allocated(self%shown)) deallocate (self%shown)
+    allocate (self%shown, source=self%model)
+    do i = 1, min(most, size(synthesis%targets))
+      associate (target => synthesis%targets(i))
+        if (self%model%request%objectives(target%objective)%kind == function_objective) cycle
+        point%name = to_text(synthesis%number_in_objective(i))
+        point%link = 1
+        point%position = target%place
+        self%shown%mechanism%points = [self%shown%mechanism%points, point]
+      end associate
+    end do
+  end subroutine show_targets
+
+  !> Make a film of the run, for drawings of the model with targets.
+  subroutine make_film(self, interruption, err)
+    class(design_motion_type), intent(inout), target :: self  !< the motion, with targets
     class(interruption_type), intent(inout), target :: interruption   !< is asked whether the run shall stop
-    type(film_type), intent(out) :: film                      !< of the run
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
     type(plan_type), pointer :: plan
     type(state_type), pointer :: state
@@ -93,16 +119,16 @@ contains
     if (allocated(err)) return
     self%run%source%interruption => interruption
     allocate (row(self%run%source%columns%width()), source=0.0_wp)
-    film = new_film(shown%mechanism, shown%problem%partition%independent(), shown%request%time%intervals + 1, &
+    self%film = new_film(self%shown%mechanism, self%shown%problem%partition%independent(), self%shown%request%time%intervals + 1, &
                     self%run%source%columns)
-    call self%run%keep_arrows(shown, film)
-    do i = 0, shown%request%time%intervals
-      call self%run%source%row_at(shown%request%time%time(i), row, err)
+    call self%run%keep_arrows(self%shown, self%film)
+    do i = 0, self%shown%request%time%intervals
+      call self%run%source%row_at(self%shown%request%time%time(i), row, err)
       if (allocated(err)) exit
       call self%run%motion%simulation%present(plan, state)
-      kept = film%keeps_next()
-      call film%take(shown%mechanism, plan, state, row)
-      if (kept) call self%run%source%show_forces(film, err)
+      kept = self%film%keeps_next()
+      call self%film%take(self%shown%mechanism, plan, state, row)
+      if (kept) call self%run%source%show_forces(self%film, err)
       if (allocated(err)) exit
     end do
     self%run%source%interruption => null()

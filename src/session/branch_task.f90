@@ -13,13 +13,9 @@ module mech9_branch_task
   use mech9_answer_files, only: save_table, begin_file, end_file
   use mech9_program_kind, only: dynamics
   use mech9_command_line, only: command_line_type
-  use mech9_diagnostics, only: diagnostics_type
-  use mech9_model, only: model_type
-  use mech9_variable_model, only: variable_model_type
-  use mech9_law_times, only: check_times_of_laws
+  use mech9_data_file, only: data_file_type
   use mech9_written_files, only: result_paths_type, find_result_paths, list_plot_requests
-  use mech9_branches, only: branches_found_type, find_branches, columns_of_branches
-  use mech9_columns, only: columns_type
+  use mech9_recorded_branches, only: recorded_branches_type, list_columns
   use mech9_branches_report, only: add_branches
   use mech9_branch_words, only: print_branches
   use mech9_friction_text, only: print_left_out
@@ -32,69 +28,66 @@ module mech9_branch_task
 contains
 
   !> Find the branches that --branch asks for, and write them.
-  subroutine work_on_branches(options, model, variable, diagnostics, reported)
+  subroutine work_on_branches(options, given, reported)
     type(command_line_type), intent(in) :: options                  !< the command line
-    type(model_type), intent(in) :: model                           !< the model
-    class(variable_model_type), intent(inout), target :: variable   !< the model as a function of its parameters
-    type(diagnostics_type), intent(inout) :: diagnostics            !< gets the errors
+    type(data_file_type), intent(inout), target :: given            !< the data file; it gets the errors
     logical, intent(out) :: reported                                !< the report is written
-    type(branches_found_type) :: found
+    type(recorded_branches_type) :: found
     type(result_paths_type) :: paths
     type(error_type), allocatable :: err, of_files
 
     reported = .false.
-    call check_times_of_laws(model, model%program == dynamics, diagnostics)
-    if (diagnostics%failed()) return
-    call find_result_paths(options, model%request%output, paths)
-    call check_plots(options, model, err)
+    call given%check_times(given%model%program == dynamics)
+    if (given%failed()) return
+    call find_result_paths(options, paths, given)
+    call check_plots(options, given, err)
     if (.not. allocated(err)) &
-      call find_branches(model, variable, options%argument('branch'), found, err, signal_interruption_type())
+      call found%find(given, options%argument('branch'), err, signal_interruption_type())
     if (found%count() > 0) then
-      if (.not. options%has('quiet')) call tell(model, found)
-      call save_table(paths%table, options, model, heading_of(model%mechanism%title, found%columns), found%rows, of_files)
+      if (.not. options%has('quiet')) call tell(given, found)
+      call save_table(paths%table, options, given, heading_of(given%model%mechanism%title, found%columns), found%rows, of_files)
       if (paths%hdf5 /= '' .and. .not. allocated(of_files)) &
-        call write_hdf5(paths%hdf5, options, model, found, diagnostics%sources(1)%text, of_files)
-      if (.not. allocated(of_files)) call draw_plots(options, model, found, paths%table, of_files)
+        call write_hdf5(paths%hdf5, options, given, found, of_files)
+      if (.not. allocated(of_files)) call draw_plots(options, given, found, paths%table, of_files)
     end if
-    if (allocated(err)) call diagnostics%add_error(err)
-    if (allocated(of_files)) call diagnostics%add_error(of_files)
+    call given%fail(err)
+    call given%fail(of_files)
     if (.not. options%has('report')) return
-    call save_report(options, model, paths%table, found, diagnostics, err)
+    call save_report(options, given, paths%table, found, err)
     reported = .not. allocated(err)
-    if (allocated(err)) call diagnostics%add_error(err)
+    call given%fail(err)
   end subroutine work_on_branches
 
   !> Print what was found.
-  subroutine tell(model, found)
-    type(model_type), intent(in) :: model                !< the model
-    type(branches_found_type), intent(in) :: found       !< the branches
+  subroutine tell(given, found)
+    type(data_file_type), intent(in) :: given               !< the data file
+    type(recorded_branches_type), intent(in) :: found       !< the branches
 
-    if (model%mechanism%title /= '') write (error_unit, '(a)') model%mechanism%title
-    call print_branches(error_unit, found, model%mechanism%names)
-    if (any(found%of == 'equilibrium')) call print_left_out(error_unit, model%mechanism)
+    if (given%model%mechanism%title /= '') write (error_unit, '(a)') given%model%mechanism%title
+    call print_branches(error_unit, found%branches_found_type, given%model%mechanism%names)
+    if (any(found%of == 'equilibrium')) call print_left_out(error_unit, given%model%mechanism)
   end subroutine tell
 
   !> Write the HDF5 file.
-  subroutine write_hdf5(path, options, model, found, data_text, err)
+  subroutine write_hdf5(path, options, given, found, err)
     character(len=*), intent(in) :: path                 !< of the file
     type(command_line_type), intent(in) :: options       !< the command line
-    type(model_type), intent(in) :: model                !< the model
-    type(branches_found_type), intent(in) :: found       !< the branches
-    character(len=*), intent(in) :: data_text            !< text of the data file
+    type(data_file_type), intent(in) :: given            !< the data file
+    type(recorded_branches_type), intent(in) :: found       !< the branches
     type(error_type), allocatable, intent(out) :: err    !< allocated if the file cannot be written
     type(hdf5_file_type) :: file
 
-    call begin_file(path, options, model, data_text, file, err)
+    call begin_file(path, options, given, file, err)
     if (allocated(err)) return
-    call write_branches(found, file)
+    call write_branches(found%branches_found_type, file)
     call end_file(file, err)
   end subroutine write_hdf5
 
   !> Draw the plots, and print a line about each.
-  subroutine draw_plots(options, model, found, table, err)
+  subroutine draw_plots(options, given, found, table, err)
     type(command_line_type), intent(in) :: options       !< the command line
-    type(model_type), intent(in) :: model                !< the model
-    type(branches_found_type), intent(in) :: found       !< the branches
+    type(data_file_type), intent(in) :: given            !< the data file
+    type(recorded_branches_type), intent(in) :: found       !< the branches
     character(len=*), intent(in) :: table                !< path of the table; empty: none
     type(error_type), allocatable, intent(out) :: err    !< allocated if a plot cannot be made
     type(branch_rows_type) :: branches
@@ -103,11 +96,11 @@ contains
     logical :: is_lacking
     integer :: i
 
-    call list_plot_requests(options, model%mechanism%names, requests)
+    call list_plot_requests(options, given%model%mechanism%names, requests)
     if (size(requests) == 0) return
-    branches%heading = heading_of(model%mechanism%title, found%columns)
+    branches%heading = heading_of(given%model%mechanism%title, found%columns)
     branches%labels = branches%heading
-    call branches%labels%call_by_names(model%mechanism%names)
+    call branches%labels%call_by_names(given%model%mechanism%names)
     branches%rows = found%rows
     branches%stable = found%stable
     do i = 1, size(requests)
@@ -119,38 +112,34 @@ contains
   end subroutine draw_plots
 
   !> Fail with exit_usage where --plot asks for a column that the branches do not have.
-  subroutine check_plots(options, model, err)
+  subroutine check_plots(options, given, err)
     type(command_line_type), intent(in) :: options       !< the command line
-    type(model_type), intent(in) :: model                !< the model
+    type(data_file_type), intent(in) :: given            !< the data file
     type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
-    type(columns_type) :: columns
     type(plot_request_type) :: request
-    type(string_type), allocatable :: requests(:)
-    integer :: i, j
+    type(string_type), allocatable :: requests(:), names(:)
+    integer :: i
 
-    call list_plot_requests(options, model%mechanism%names, requests)
-    do j = 1, size(model%parameters)
-      if (model%parameters(j)%name /= options%argument('branch')) cycle
-      columns = columns_of_branches(model, model%parameters(j), .true., .true.)
-      do i = 1, size(requests)
-        call read_branch_plot(requests(i)%text, columns%names(:columns%count), request, err)
-        if (allocated(err)) return
-      end do
+    call list_columns(given, options%argument('branch'), names)
+    if (size(names) == 0) return
+    call list_plot_requests(options, given%model%mechanism%names, requests)
+    do i = 1, size(requests)
+      call read_branch_plot(requests(i)%text, names, request, err)
+      if (allocated(err)) return
     end do
   end subroutine check_plots
 
   !> Save the report.
-  subroutine save_report(options, model, table, found, diagnostics, err)
+  subroutine save_report(options, given, table, found, err)
     type(command_line_type), intent(in) :: options          !< the command line
-    type(model_type), intent(in) :: model                   !< the model
+    type(data_file_type), intent(in) :: given               !< the data file
     character(len=*), intent(in) :: table                   !< path of the table; empty: none
-    type(branches_found_type), intent(in) :: found          !< the branches; without any after a failure
-    type(diagnostics_type), intent(in) :: diagnostics       !< the errors
+    type(recorded_branches_type), intent(in) :: found          !< the branches; without any after a failure
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     type(json_type) :: json
 
-    call begin_report(json, model, diagnostics, table)
-    call add_branches(json, found)
+    call begin_report(json, given%model, given%diagnostics, table)
+    call add_branches(json, found%branches_found_type)
     call json%end_object()
     call json%save(options%argument('report'), err)
   end subroutine save_report

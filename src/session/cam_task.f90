@@ -2,22 +2,19 @@
 module mech9_cam_task
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, add_place, exit_usage
+  use mech9_error, only: error_type, raise, exit_usage
   use mech9_text, only: string_type, to_text
   use mech9_counted, only: counted
   use mech9_path, only: ending_of
   use mech9_command_line, only: command_line_type
   use mech9_cam_files, only: cam_file_type, read_cam_file
   use mech9_json, only: json_type
-  use mech9_diagnostics, only: diagnostics_type
-  use mech9_model, only: model_type
-  use mech9_model_motion, only: model_motion_type
-  use mech9_cam_profile, only: cam_profile_type, find_profile
-  use mech9_cam_rows, only: list_cam_rows
+  use mech9_data_file, only: data_file_type
+  use mech9_recorded_cam, only: recorded_cam_type
   use mech9_answer_files, only: save_table
   use mech9_heading, only: new_heading
   use mech9_cam_picture, only: save_cam_picture
-  use mech9_cam_text, only: print_cam, judge_cam, name_of_cam
+  use mech9_cam_text, only: print_cam, name_of_cam
   use mech9_cam_report, only: add_cam
   use mech9_report_parts, only: begin_report
   implicit none
@@ -27,40 +24,36 @@ module mech9_cam_task
 contains
 
   !> Compute the profiles of all requested cams, and write their files.
-  subroutine work_on_cams(options, model, motion, diagnostics, reported, err)
+  subroutine work_on_cams(options, given, reported, err)
     type(command_line_type), intent(in) :: options      !< the command line
-    type(model_type), intent(in), target :: model       !< the model
-    type(model_motion_type), intent(in) :: motion       !< its motion, assembled
-    type(diagnostics_type), intent(in) :: diagnostics   !< messages so far, for the report
+    type(data_file_type), intent(in), target :: given   !< the data file
     logical, intent(out) :: reported                    !< the report is written, or could not be written
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(cam_file_type), allocatable :: files(:)
-    type(cam_profile_type) :: profile
+    type(recorded_cam_type) :: profile
     type(json_type) :: json
     integer :: i, k
 
     reported = .false.
-    call read_files(options, size(model%request%cams), files, err)
+    call read_files(options, size(given%model%request%cams), files, err)
     if (allocated(err)) return
-    call begin_report(json, model, diagnostics, '')
+    call begin_report(json, given%model, given%diagnostics, '')
     call json%begin_array('cams')
-    do k = 1, size(model%request%cams)
+    do k = 1, size(given%model%request%cams)
       if (.not. any(files%number == k)) cycle
-      associate (cam => model%request%cams(k))
-        call find_profile(model, motion%plan, motion%start, cam, profile, err)
-        if (.not. allocated(err)) call judge_cam(model, k, profile, err)
-        call add_place(err, place=cam%place)
+      associate (cam => given%model%request%cams(k))
+        call profile%find(given, k, err)
         if (allocated(err)) return
-        if (.not. options%has('quiet')) call print_cam(error_unit, model, k, profile)
+        if (.not. options%has('quiet')) call print_cam(error_unit, given%model, k, profile%cam_profile_type)
         call json%begin_object()
-        call add_cam(json, model, k, profile)
+        call add_cam(json, given%model, k, profile%cam_profile_type)
         call json%end_object()
         do i = 1, size(files)
           if (files(i)%number /= k) cycle
           if (files(i)%is_picture) then
-            call save_cam_picture(files(i)%path, name_of_cam(model, k), model, cam, profile, err)
+            call save_cam_picture(files(i)%path, name_of_cam(given%model, k), given%model, cam, profile%cam_profile_type, err)
           else
-            call write_profile(files(i)%path, options, model, k, profile, err)
+            call write_profile(files(i)%path, options, given, profile, err)
           end if
           if (allocated(err)) return
           if (files(i)%path /= '-' .and. .not. options%has('quiet')) &
@@ -109,18 +102,18 @@ contains
   end subroutine read_files
 
   !> Write the table of a profile, with a row for each output at which the follower moves against the cam.
-  subroutine write_profile(path, options, model, number, profile, err)
+  subroutine write_profile(path, options, given, profile, err)
     character(len=*), intent(in) :: path                !< of the table; '-' is standard output
     type(command_line_type), intent(in) :: options      !< the command line
-    type(model_type), intent(in) :: model               !< the model
-    integer, intent(in) :: number                       !< of the cam
-    type(cam_profile_type), intent(in) :: profile       !< its profile
+    type(data_file_type), intent(in) :: given           !< the data file
+    type(recorded_cam_type), intent(in) :: profile       !< its profile
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(string_type), allocatable :: names(:), units(:)
     real(wp), allocatable :: rows(:, :)
 
-    call list_cam_rows(model%mechanism, model%request%cams(number), profile, names, units, rows)
-    call save_table(path, options, model, &
-                    new_heading(model%mechanism%title//new_line('a')//name_of_cam(model, number), names, units), rows, err)
+    call profile%list_rows(given, names, units, rows)
+    call save_table(path, options, given, &
+                    new_heading(given%model%mechanism%title//new_line('a')//name_of_cam(given%model, profile%number), &
+                                names, units), rows, err)
   end subroutine write_profile
 end module mech9_cam_task

@@ -3,15 +3,13 @@ module mech9_exponents_task
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_text, only: string_type, to_text
+  use mech9_text, only: string_type
   use mech9_json, only: json_type
   use mech9_heading, only: new_heading
   use mech9_answer_files, only: save_table
   use mech9_command_line, only: command_line_type
-  use mech9_diagnostics, only: diagnostics_type
-  use mech9_model, only: model_type
-  use mech9_law_times, only: check_times_of_laws
-  use mech9_exponents, only: exponents_found_type, find_exponents
+  use mech9_data_file, only: data_file_type
+  use mech9_recorded_exponents, only: recorded_exponents_type
   use mech9_exponents_words, only: print_exponents
   use mech9_exponents_report, only: add_exponents
   use mech9_report_parts, only: begin_report
@@ -23,64 +21,53 @@ module mech9_exponents_task
 contains
 
   !> Find the exponents that --exponents asks for, and write them.
-  subroutine work_on_exponents(options, model, diagnostics, reported)
+  subroutine work_on_exponents(options, given, reported)
     type(command_line_type), intent(in) :: options          !< the command line
-    type(model_type), intent(in) :: model                   !< the model
-    type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
+    type(data_file_type), intent(inout) :: given            !< the data file; it gets the errors
     logical, intent(out) :: reported                        !< the report is written
-    type(exponents_found_type) :: found
+    type(recorded_exponents_type) :: found
     type(error_type), allocatable :: err, of_table
 
     reported = .false.
-    call check_times_of_laws(model, .true., diagnostics)
-    if (diagnostics%failed()) return
-    call find_exponents(model, options%number('exponents', 1), found, err, signal_interruption_type())
+    call given%check_times(.true.)
+    if (given%failed()) return
+    call found%find(given, options%number('exponents', 1), err, signal_interruption_type())
     if (allocated(found%exponents)) then
-      if (.not. options%has('quiet')) call print_exponents(error_unit, model, found)
-      call write_table(options, model, found, of_table)
-      if (allocated(of_table)) call diagnostics%add_error(of_table)
+      if (.not. options%has('quiet')) call print_exponents(error_unit, given%model, found%exponents_found_type)
+      call write_table(options, given, found, of_table)
+      call given%fail(of_table)
     end if
-    if (allocated(err)) call diagnostics%add_error(err)
+    call given%fail(err)
     if (.not. options%has('report')) return
-    call save_report(options, model, found, diagnostics, err)
+    call save_report(options, given, found, err)
     reported = .not. allocated(err)
-    if (allocated(err)) call diagnostics%add_error(err)
+    call given%fail(err)
   end subroutine work_on_exponents
 
   !> Write the table of running means: to the file that is named, or to standard output.
-  subroutine write_table(options, model, found, err)
+  subroutine write_table(options, given, found, err)
     type(command_line_type), intent(in) :: options       !< the command line
-    type(model_type), intent(in) :: model                !< the model
-    type(exponents_found_type), intent(in) :: found      !< the exponents
+    type(data_file_type), intent(in) :: given            !< the data file
+    type(recorded_exponents_type), intent(in) :: found      !< the exponents
     type(error_type), allocatable, intent(out) :: err    !< allocated if the file cannot be written
-    type(string_type), dimension(size(found%exponents) + 1) :: names, units
+    type(string_type), allocatable :: names(:), units(:)
     real(wp), allocatable :: rows(:, :)
-    integer :: k
 
     if (options%table_of_answer() == '') return
-    names(1)%text = 't'
-    units(1)%text = 's'
-    do k = 1, size(found%exponents)
-      names(k + 1)%text = 'L'//to_text(k)
-      units(k + 1)%text = '1/s'
-    end do
-    allocate (rows(size(names), size(found%times)))
-    rows(1, :) = found%times
-    rows(2:, :) = found%history
-    call save_table(options%table_of_answer(), options, model, new_heading(model%mechanism%title, names, units), rows, err)
+    call found%list_rows(names, units, rows)
+    call save_table(options%table_of_answer(), options, given, new_heading(given%model%mechanism%title, names, units), rows, err)
   end subroutine write_table
 
   !> Save the report.
-  subroutine save_report(options, model, found, diagnostics, err)
+  subroutine save_report(options, given, found, err)
     type(command_line_type), intent(in) :: options          !< the command line
-    type(model_type), intent(in) :: model                   !< the model
-    type(exponents_found_type), intent(in) :: found         !< the exponents; without them after a failure
-    type(diagnostics_type), intent(in) :: diagnostics       !< the errors
+    type(data_file_type), intent(in) :: given               !< the data file
+    type(recorded_exponents_type), intent(in) :: found         !< the exponents; without them after a failure
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     type(json_type) :: json
 
-    call begin_report(json, model, diagnostics, options%table_of_answer())
-    call add_exponents(json, found)
+    call begin_report(json, given%model, given%diagnostics, options%table_of_answer())
+    call add_exponents(json, found%exponents_found_type)
     call json%end_object()
     call json%save(options%argument('report'), err)
   end subroutine save_report

@@ -7,14 +7,12 @@ module mech9_linear_task
   use mech9_counted, only: counted
   use mech9_numeral, only: numeral_type, read_numeral
   use mech9_command_line, only: command_line_type
-  use mech9_diagnostics, only: diagnostics_type
-  use mech9_model, only: model_type
-  use mech9_linear_motion, only: linear_motion_type, find_linear_motion
+  use mech9_data_file, only: data_file_type
+  use mech9_recorded_linear, only: recorded_linear_motion_type
   use mech9_hdf5_file, only: hdf5_file_type
   use mech9_linear_layout, only: put_linear_motion
   use mech9_answer_files, only: begin_file, end_file
   use mech9_signal_interruption, only: signal_interruption_type
-  use mech9_law_times, only: check_times_of_laws
   implicit none
   private
   public :: work_on_linear_motion
@@ -25,29 +23,28 @@ module mech9_linear_task
 contains
 
   !> Follow the motion, and write the matrices at the times of --at.
-  subroutine work_on_linear_motion(options, model, diagnostics)
+  subroutine work_on_linear_motion(options, given)
     type(command_line_type), intent(in) :: options          !< the command line
-    type(model_type), intent(in) :: model                   !< the model
-    type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
-    type(linear_motion_type) :: found
+    type(data_file_type), intent(inout) :: given            !< the data file; it gets the errors
+    type(recorded_linear_motion_type) :: found
     type(hdf5_file_type) :: file
     type(error_type), allocatable :: err
     real(wp), allocatable :: times(:)
 
-    call check_times_of_laws(model, .true., diagnostics)
-    if (diagnostics%failed()) return
+    call given%check_times(.true.)
+    if (given%failed()) return
     call read_times(options%argument('at'), times, err)
-    if (.not. allocated(err)) call find_linear_motion(model, times, found, err, signal_interruption_type())
+    if (.not. allocated(err)) call found%find(given, times, err, signal_interruption_type())
     if (.not. allocated(err)) &
-      call begin_file(options%argument('linear'), options, model, diagnostics%sources(1)%text, file, err)
+      call begin_file(options%argument('linear'), options, given, file, err)
     if (.not. allocated(err)) then
-      call put_linear_motion(file, model, found)
+      call put_linear_motion(file, given%model, found%linear_motion_type)
       call end_file(file, err)
     end if
     if (allocated(err)) then
-      call diagnostics%add_error(err)
+      call given%fail(err)
     else if (.not. options%has('quiet')) then
-      if (model%mechanism%title /= '') write (error_unit, '(a)') model%mechanism%title
+      if (given%model%mechanism%title /= '') write (error_unit, '(a)') given%model%mechanism%title
       write (error_unit, '(a)') 'linearised equations of motion at '//counted(size(found%times), 'time')// &
         ' of the motion, from t = '//to_text(found%times(1)%t, 6)//' s to '// &
         to_text(found%times(size(found%times))%t, 6)//' s: '//options%argument('linear')

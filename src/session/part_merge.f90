@@ -4,7 +4,6 @@ module mech9_part_merge
   use mech9_program_kind, only: program_names
   use mech9_text, only: string_type
   use mech9_error, only: error_type, exit_done
-  use mech9_request, only: output_settings_type
   use mech9_command_line, only: command_line_type
   use mech9_hdf5_file, only: hdf5_file_type
   use mech9_hdf5_reading, only: open_existing, has_data_set
@@ -26,7 +25,7 @@ contains
     logical :: are_searches
 
     call options%arguments('merge', paths)
-    call refuse_overwriting(options, paths, err, output_settings_type(table='', hdf5='', sketch='', animation=''))
+    call refuse_overwriting(options, paths, err)
     if (.not. allocated(err)) call judge_first(paths(1)%text, are_searches, err)
     if (.not. allocated(err)) then
       if (are_searches) then

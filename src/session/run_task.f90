@@ -5,15 +5,7 @@ module mech9_run_task
   use mech9_error, only: error_type
   use mech9_system, only: asked_to_end
   use mech9_command_line, only: command_line_type
-  use mech9_diagnostics, only: diagnostics_type
-  use mech9_model, only: model_type
-  use mech9_free_simulation, only: free_simulation_type
-  use mech9_model_motion, only: model_motion_type
-  use mech9_run, only: run_type
-  use mech9_periodic, only: periodic_found_type
-  use mech9_row_source, only: row_source_type
-  use mech9_force_record, only: reacting_pairs
-  use mech9_film, only: film_type
+  use mech9_data_file, only: data_file_type
   use mech9_json, only: json_type
   use mech9_facts, only: facts_type
   use mech9_kept_rows, only: kept_rows_type
@@ -30,7 +22,9 @@ module mech9_run_task
   use mech9_picture_requests, only: picture_requests_type
   use mech9_results, only: results_type
   use mech9_quantity_results, only: print_quantities
-  use mech9_section_results, only: check_section_plots, write_section_results, print_section
+  use mech9_section_results, only: check_section_plots, write_section_files
+  use mech9_section_words, only: print_section
+  use mech9_section_layout, only: write_section
   use mech9_signal_interruption, only: signal_interruption_type
   use mech9_run_outcome, only: run_outcome_type
   use mech9_run_facts, only: list_run_facts
@@ -44,16 +38,13 @@ module mech9_run_task
 
 contains
 
-  !> Carry out a run and report it.
-  subroutine carry_out(options, pictures, model, run, diagnostics, reported, kept, periodic)
+  !> Carry out the run of a data file, which is prepared, and report it.
+  subroutine carry_out(options, pictures, given, reported, kept)
     type(command_line_type), intent(in) :: options                    !< the command line
     type(picture_requests_type), intent(in) :: pictures               !< the pictures of the mechanism that are requested
-    type(model_type), intent(inout), target :: model                  !< of the simulation; gets the tolerances for an accuracy
-    type(run_type), intent(inout), target :: run                      !< prepared
-    type(diagnostics_type), intent(inout) :: diagnostics              !< gets the errors
+    type(data_file_type), intent(inout), target :: given              !< the data file; it gets the errors
     logical, intent(out) :: reported                                  !< the run has written the report
     type(kept_rows_type), intent(inout), optional :: kept             !< gets the rows as well, for a look at them after the run
-    type(periodic_found_type), intent(in), optional :: periodic       !< periodic motions, of which the run records one, for the report
     type(results_type), target :: results
     type(facts_type) :: facts
     type(json_type) :: json
@@ -62,94 +53,95 @@ contains
     type(error_type), allocatable :: err
     logical :: ready
 
-    associate (motion => run%motion, source => run%source)
-      call source%forces%judge(model, motion%plan, motion%start)
-      reported = .false.
-      call source%begin_section(err)
-      if (.not. allocated(err)) call check_section_plots(options, model, source%section, err)
-      if (allocated(err)) call diagnostics%add_error(err)
-      if (allocated(err)) return
-      if (pictures%any_wanted()) call run%record_film(model)
-      call begin_run(options, model, run, results, diagnostics, ready)
-      if (.not. options%has('quiet')) call print_start_way(error_unit, model%mechanism, motion%way)
-      reported = ready .and. options%has('report')
-      if (.not. ready) return
-      call find_tolerances(options, pictures, model, motion, err)
-      call list_run_facts(motion, outcome, facts)
-      call results%write_facts(facts)
-      hdf5 => results%hdf5()
-      if (associated(hdf5) .and. motion%is_free()) call write_start(hdf5, motion, motion%free())
-      if (.not. allocated(err)) call record(source, model, results, options%has('quiet'), outcome, err, kept)
-      if (.not. options%has('quiet')) call print_run(error_unit, motion, results%table_path, outcome)
-      if (allocated(err)) call diagnostics%add_error(err)
-      call list_run_facts(motion, outcome, facts)
-      call results%write_facts(facts, diagnostics%code())
-      if (associated(hdf5) .and. motion%is_free()) call write_end(hdf5, motion%free())
-      call mark_events(results%sinks, motion%simulation%events, model%mechanism)
-      if (present(kept)) call kept%take_events(motion%simulation%events, model%mechanism)
-      call end_run(options, pictures, model, source, results, diagnostics)
-      if (.not. reported) return
-      call compose_report(json, model, diagnostics, results%table_path, facts, run, periodic)
-      call json%save(options%argument('report'), err)
-      if (allocated(err)) call diagnostics%add_error(err)
+    call given%run%source%forces%judge(given%model, given%run%motion%plan, given%run%motion%start)
+    reported = .false.
+    call given%run%source%begin_section(err)
+    if (allocated(given%run%source%section)) then
+      call check_section_plots(options, given, err, given%run%source%section%names)
+    else if (.not. allocated(err)) then
+      call check_section_plots(options, given, err)
+    end if
+    call given%fail(err)
+    if (allocated(err)) return
+    if (pictures%any_wanted()) call given%run%record_film(given%model)
+    call begin_run(options, given, results, ready)
+    if (.not. options%has('quiet')) call print_start_way(error_unit, given%model%mechanism, given%run%motion%way)
+    reported = ready .and. options%has('report')
+    if (.not. ready) return
+    call find_tolerances(options, pictures, given, err)
+    call list_run_facts(given%run%motion, outcome, facts)
+    call results%write_facts(facts)
+    hdf5 => results%hdf5()
+    if (associated(hdf5) .and. given%run%motion%is_free()) call write_start(hdf5, given)
+    if (.not. allocated(err)) call record(given, results, options%has('quiet'), outcome, err, kept)
+    if (.not. options%has('quiet')) call print_run(error_unit, given%run%motion, results%table_path, outcome)
+    call given%fail(err)
+    call list_run_facts(given%run%motion, outcome, facts)
+    call results%write_facts(facts, given%diagnostics%code())
+    if (associated(hdf5) .and. given%run%motion%is_free()) call write_end(hdf5, given)
+    associate (events => given%run%motion%simulation%events)
+      call mark_events(results%sinks, events, given%model%mechanism)
+      if (present(kept)) call kept%take_events(events, given%model%mechanism)
     end associate
+    call end_run(options, pictures, given, results)
+    if (.not. reported) return
+    call compose_report(json, given%model, given%diagnostics, results%table_path, facts, given%run, given%periodic)
+    call json%save(options%argument('report'), err)
+    call given%fail(err)
   end subroutine carry_out
 
   !> Write the coefficients of a free motion as data sets, and make data sets for changes of coordinates.
-  subroutine write_start(hdf5, motion, simulation)
+  subroutine write_start(hdf5, given)
     type(hdf5_sink_type), intent(inout) :: hdf5               !< the open file of results
-    type(model_motion_type), intent(in) :: motion             !< the motion, prepared
-    type(free_simulation_type), intent(in) :: simulation      !< its simulation
+    type(data_file_type), intent(inout), target :: given      !< the data file, with a free motion that is prepared
 
-    call write_coefficients(hdf5%file, motion%plan, simulation)
-    call hdf5%begin_changes(size(motion%plan%independent))
+    call write_coefficients(hdf5%file, given%run%motion%plan, given%run%motion%free())
+    call hdf5%begin_changes(size(given%run%motion%plan%independent))
   end subroutine write_start
 
   !> Write the changes of the independent coordinates and the events as data sets.
-  subroutine write_end(hdf5, simulation)
+  subroutine write_end(hdf5, given)
     type(hdf5_sink_type), intent(inout) :: hdf5               !< the open file of results
-    type(free_simulation_type), intent(in) :: simulation      !< the free motion, as far as it went
+    type(data_file_type), intent(inout), target :: given      !< the data file, with a free motion as far as it went
     real(wp), allocatable :: rows(:, :)
 
-    call take_changes(simulation, rows)
+    call take_changes(given%run%motion%free(), rows)
     call hdf5%write_changes(rows)
-    call write_events(hdf5%file, simulation)
+    call write_events(hdf5%file, given%run%motion%free())
   end subroutine write_end
 
   !> Find the tolerances for an accuracy, where one is asked for, and tell where the runs are that this needs.
-  subroutine find_tolerances(options, pictures, model, motion, err)
+  subroutine find_tolerances(options, pictures, given, err)
     type(command_line_type), intent(in) :: options          !< the command line
     type(picture_requests_type), intent(in) :: pictures     !< the pictures of the mechanism that are requested
-    type(model_type), intent(inout) :: model                !< of the simulation; gets the tolerances
-    type(model_motion_type), intent(inout) :: motion        !< prepared
+    type(data_file_type), intent(inout) :: given            !< the data file
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     type(signal_interruption_type), target :: interruption
 
-    if (.not. motion%simulation%with_error) return
-    call interruption%words%start(model%program, 'no row yet', 'a run that tells the accuracy', options%has('quiet'), &
+    if (.not. given%run%motion%simulation%with_error) return
+    call interruption%words%start(given%model%program, 'no row yet', 'a run that tells the accuracy', options%has('quiet'), &
                                   with_progress=.true.)
-    call motion%find_tolerances(model, err, pictures%any_wanted(), interruption)
+    call given%run%motion%find_tolerances(given%model, err, pictures%any_wanted(), interruption)
     call interruption%words%finish()
   end subroutine find_tolerances
 
   !> Print the title of the run and open its results. `ready` is false after an error.
-  subroutine begin_run(options, model, run, results, diagnostics, ready)
+  subroutine begin_run(options, given, results, ready)
     type(command_line_type), intent(in) :: options         !< the command line
-    type(model_type), intent(in) :: model              !< the model
-    type(run_type), intent(in) :: run                      !< prepared
+    type(data_file_type), intent(inout) :: given           !< the data file; it gets the errors
     type(results_type), intent(out), target :: results     !< opened
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets the errors
     logical, intent(out) :: ready                          !< the run can begin
     type(error_type), allocatable :: err
     type(hdf5_sink_type), pointer :: hdf5
 
     ready = .false.
-    call announce(options, model, run%motion)
-    if (model%request%output%with_forces() .and. .not. options%has('quiet')) call print_forceless(error_unit, model%mechanism)
-    associate (source => run%source)
-      call results%open(options, model, diagnostics%sources(1)%text, source%columns, err)
+    call announce(options, given)
+    if (given%model%request%output%with_forces() .and. .not. options%has('quiet')) &
+      call print_forceless(error_unit, given%model%mechanism)
+    associate (source => given%run%source)
+      call results%open(options, given, err)
       ready = .not. allocated(err)
-      if (.not. ready) call diagnostics%add_error(err)
+      if (.not. ready) call given%fail(err)
       hdf5 => results%hdf5()
       if (.not. (ready .and. associated(hdf5))) return
       call write_uniqueness(hdf5%file, source%columns, source%forces)
@@ -158,64 +150,69 @@ contains
   end subroutine begin_run
 
   !> Close the results of a run, draw the mechanism, and print which files were written.
-  subroutine end_run(options, pictures, model, source, results, diagnostics)
+  subroutine end_run(options, pictures, given, results)
     type(command_line_type), intent(in) :: options         !< the command line
     type(picture_requests_type), intent(in) :: pictures    !< the pictures of the mechanism that are requested
-    type(model_type), intent(in) :: model              !< the model
-    type(row_source_type), intent(in) :: source            !< of the rows that were written
+    type(data_file_type), intent(inout) :: given           !< the data file; it gets the errors
     type(results_type), intent(inout), target :: results   !< closed on return
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets the errors
     type(error_type), allocatable :: err
     type(hdf5_sink_type), pointer :: hdf5
 
     hdf5 => results%hdf5()
-    if (associated(hdf5) .and. .not. source%quantities%is_empty()) &
-      call write_quantities(source%quantities, hdf5%file, again=.true.)
-    if (allocated(source%section)) then
-      call write_section_results(options, model, source%section, results%table_path, hdf5, err)
-      if (allocated(err)) call diagnostics%add_error(err)
-      if (.not. options%has('quiet')) &
-        call print_section(error_unit, source%section, .not. options%has('no-write'), model%mechanism%names)
-    end if
-    call results%close(err)
-    if (allocated(err)) call diagnostics%add_error(err)
-    if (.not. options%has('quiet')) call print_quantities(error_unit, source%quantities)
-    call results%print_words(error_unit, options%has('quiet'))
-    if (allocated(source%forces%unique) .and. .not. options%has('quiet')) &
-      call print_undetermined(error_unit, reacting_pairs(model), source%forces%unique, &
-                              model%request%output%reactions_in_links)
+    associate (source => given%run%source)
+      if (associated(hdf5) .and. .not. source%quantities%is_empty()) &
+        call write_quantities(source%quantities, hdf5%file, again=.true.)
+      if (allocated(source%section)) then
+        if (associated(hdf5)) call write_section(source%section, hdf5%file)
+        associate (section => source%section)
+          call write_section_files(options, given, section%names, section%units, section%points(:, :section%count), &
+                                   results%table_path, err)
+        end associate
+      end if
+    end associate
+    call given%fail(err)
+    associate (source => given%run%source)
+      if (allocated(source%section) .and. .not. options%has('quiet')) &
+        call print_section(error_unit, source%section, .not. options%has('no-write'), given%model%mechanism%names)
+      call results%close(err)
+      call given%fail(err)
+      if (.not. options%has('quiet')) call print_quantities(error_unit, source%quantities)
+      call results%print_words(error_unit, options%has('quiet'))
+      if (allocated(source%forces%unique) .and. .not. options%has('quiet')) &
+        call print_undetermined(error_unit, given%reacting_pairs(), source%forces%unique, &
+                                given%model%request%output%reactions_in_links)
+    end associate
     ! an interrupted program makes no pictures, which would take too long
     if (asked_to_end()) return
-    if (allocated(source%film)) call draw(options, pictures, model, source%film, diagnostics)
+    if (allocated(given%run%source%film)) call draw(options, pictures, given)
   end subroutine end_run
 
   !> Print the title, and with --verbose the structure and the plan.
-  subroutine announce(options, model, motion)
+  subroutine announce(options, given)
     type(command_line_type), intent(in) :: options   !< the command line
-    type(model_type), intent(in) :: model        !< the model
-    type(model_motion_type), intent(in) :: motion    !< prepared
+    type(data_file_type), intent(in) :: given        !< the data file
 
-    if (.not. options%has('quiet') .and. model%mechanism%title /= '') write (error_unit, '(a)') model%mechanism%title
-    if (.not. options%has('quiet')) call print_held(error_unit, model)
-    if (.not. options%has('quiet')) call print_parameter_notes(error_unit, model)
+    if (.not. options%has('quiet') .and. given%model%mechanism%title /= '') write (error_unit, '(a)') given%model%mechanism%title
+    if (.not. options%has('quiet')) call print_held(error_unit, given%model)
+    if (.not. options%has('quiet')) call print_parameter_notes(error_unit, given%model)
     if (.not. options%has('verbose')) return
-    call print_structure(error_unit, model%mechanism%structure, model%problem%partition%vectors)
-    call print_mobility(error_unit, model%mechanism, motion%plan)
-    call print_plan(error_unit, model%mechanism, motion%plan, motion%simulation%requested)
+    call print_structure(error_unit, given%model%mechanism%structure, given%model%problem%partition%vectors)
+    associate (motion => given%run%motion)
+      call print_mobility(error_unit, given%model%mechanism, motion%plan)
+      call print_plan(error_unit, given%model%mechanism, motion%plan, motion%simulation%requested)
+    end associate
   end subroutine announce
 
   !> Draw the requested pictures of the mechanism, and print a line about each.
-  subroutine draw(options, pictures, model, film, diagnostics)
+  subroutine draw(options, pictures, given)
     type(command_line_type), intent(in) :: options         !< the command line
     type(picture_requests_type), intent(in) :: pictures    !< the pictures of the mechanism that are requested
-    type(model_type), intent(in) :: model              !< the model
-    type(film_type), intent(in) :: film                    !< poses and columns at some outputs
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets the errors
+    type(data_file_type), intent(inout) :: given           !< the data file; it gets the errors
     type(error_type), allocatable :: err
 
-    call pictures%save(model, film, err)
+    call pictures%save(given%model, given%run%source%film, err)
     if (allocated(err)) then
-      call diagnostics%add_error(err)
+      call given%fail(err)
     else if (.not. options%has('quiet')) then
       call pictures%print_words(error_unit)
     end if

@@ -1,23 +1,16 @@
 !> Work on a data file, from the options of a command line to an exit code, the same for all tasks.
 module mech9_session
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
-  use mech9_program_kind, only: kinematics, program_names
-  use mech9_error, only: error_type, exit_done, exit_file
+  use mech9_program_kind, only: program_names
+  use mech9_error, only: error_type, exit_done
   use mech9_text, only: string_type
   use mech9_command_line, only: command_line_type
   use mech9_help_text, only: help_text
   use mech9_version, only: version_text
   use mech9_system, only: catch_interrupts, catch_size_limit, flush_output
-  use mech9_document, only: document_type
-  use mech9_diagnostics, only: diagnostics_type
-  use mech9_parser, only: read_document
-  use mech9_setting, only: apply_setting
-  use mech9_drive_reader, only: files_of_groups
-  use mech9_varied_document, only: varied_document_type, new_varied_document
-  use mech9_reader, only: read_model
+  use mech9_data_file, only: data_file_type
   use mech9_data_help, only: write_data_help
   use mech9_kept_rows, only: kept_rows_type
-  use mech9_model, only: model_type
   use mech9_structure_text, only: print_structure_of
   use mech9_task, only: work_on_mechanism, answers_only
   use mech9_report_parts, only: save_short_report
@@ -26,10 +19,8 @@ module mech9_session
   use mech9_dakota_task, only: work_for_dakota
   use mech9_part_merge, only: merge_parts
   use mech9_optimum_task, only: work_on_optimum
-  use mech9_choice_check, only: judge_choice_of
   use mech9_unused_options, only: print_unused_options
   use mech9_overwriting, only: refuse_overwriting
-  use mech9_made_check, only: refuse_other_mechanism
   implicit none
   private
   public :: carry_out, run_file, asks_for_text
@@ -90,27 +81,18 @@ contains
     type(processes_type), intent(inout) :: processes  !< those that make studies and searches together
     integer, intent(out) :: code                            !< exit code of the program
     type(kept_rows_type), intent(inout), optional :: kept   !< the rows of the run, for who looks at them after it
-    type(document_type) :: document
-    type(diagnostics_type) :: diagnostics, choice
-    type(model_type), target :: model
-    type(varied_document_type), target :: variable
+    class(data_file_type), allocatable, target :: given
     type(string_type), allocatable :: settings(:), inputs(:)
     type(error_type), allocatable :: err
-    logical :: legible, reported
-    integer :: i
+    logical :: reported
 
     ! an answer without a run has no results to keep: Ctrl-C ends it at once
     call catch_size_limit()
     if (.not. answers_only(options)) call catch_interrupts()
-    model%program = options%program
-    call read_document(path, document, diagnostics)
+    allocate (given)
     call options%arguments('set', settings)
-    if (diagnostics%code() /= exit_file) then
-      do i = 1, size(settings)
-        call apply_setting(document, settings(i)%text, diagnostics)
-      end do
-    end if
-    call list_inputs(path, options, document, inputs)
+    call given%open(path, options%program, settings)
+    call list_inputs(path, options, given, inputs)
     call refuse_overwriting(options, inputs, err)
     if (allocated(err)) then
       write (error_unit, '(3a)') program_names(options%program), ': ', err%message
@@ -121,54 +103,60 @@ contains
     reported = .not. processes%is_first
     if (options%has('structure')) then
       if (options%has('quiet')) then
-        call print_structure_of(output_unit, document, diagnostics)
+        call print_structure_of(output_unit, given%document, given%diagnostics)
       else
-        call print_unused_options(error_unit, options, model)
-        call print_structure_of(output_unit, document, diagnostics, names_unit=error_unit)
+        call print_unused_options(error_unit, options, given)
+        call print_structure_of(output_unit, given%document, given%diagnostics, names_unit=error_unit)
       end if
     else
-      legible = .not. diagnostics%failed()
-      call read_model(document, options%program, model, diagnostics)
-      if (.not. diagnostics%failed()) call refuse_other_mechanism(document, diagnostics)
-      if (.not. diagnostics%failed()) then
-        if (.not. options%has('quiet')) call print_unused_options(error_unit, options, model)
-        call refuse_overwriting(options, inputs, err, model%request%output, model%request%section)
-        reported = reported .or. allocated(err)
-        if (allocated(err)) call diagnostics%add_error(err)
-        if (options%has('study') .or. options%has('optimize') .or. options%has('dakota') .or. options%has('branch') .or. &
-            model%request%output%with_derivatives()) &
-          call new_varied_document(document, diagnostics%sources, options%program, variable)
-        if (.not. allocated(err) .and. options%has('dakota')) then
-          call work_for_dakota(options, variable, model, diagnostics)
-        else if (.not. allocated(err) .and. options%has('study')) then
-          call work_on_study(options, document, variable, model, diagnostics, reported, processes)
-        else if (.not. allocated(err) .and. options%has('optimize')) then
-          call work_on_optimum(options, document, variable, model, diagnostics, reported, processes)
-        else if (.not. allocated(err)) then
-          call work_on_mechanism(options, model, variable, diagnostics, reported, kept)
-        end if
-      else if (legible .and. options%program == kinematics) then
-        call judge_choice_of(document, diagnostics, choice)
-      end if
+      call given%read()
+      if (.not. given%failed()) call work_on_model(options, inputs, given, reported, processes, kept)
     end if
-    code = diagnostics%code()
-    if (choice%failed()) code = choice%code()
-    if (options%has('report') .and. .not. reported) &
-      call report_briefly(options, model, choice, diagnostics, code)
-    call choice%report(error_unit)
-    call diagnostics%report(error_unit)
+    code = given%code()
+    if (options%has('report') .and. .not. reported) call report_briefly(options, given, code)
+    call given%report(error_unit)
   end subroutine run_file
 
+  !> Carry out the options on the model of a data file.
+  subroutine work_on_model(options, inputs, given, reported, processes, kept)
+    type(command_line_type), intent(in) :: options          !< the command line
+    type(string_type), intent(in) :: inputs(:)              !< paths of the files that are read
+    type(data_file_type), intent(inout), target :: given    !< the data file; it gets the errors
+    logical, intent(inout) :: reported                      !< the report is written, or needs not be
+    type(processes_type), intent(inout) :: processes        !< those that make studies and searches together
+    type(kept_rows_type), intent(inout), optional :: kept   !< the rows of the run, for who looks at them after it
+    type(error_type), allocatable :: err
+
+    if (.not. options%has('quiet')) call print_unused_options(error_unit, options, given)
+    call refuse_overwriting(options, inputs, err, given)
+    if (allocated(err)) then
+      reported = .true.
+      call given%fail(err)
+      return
+    end if
+    if (options%has('study') .or. options%has('optimize') .or. options%has('dakota') .or. options%has('branch') .or. &
+        given%model%request%output%with_derivatives()) call given%prepare_variable()
+    if (options%has('dakota')) then
+      call work_for_dakota(options, given)
+    else if (options%has('study')) then
+      call work_on_study(options, given, reported, processes)
+    else if (options%has('optimize')) then
+      call work_on_optimum(options, given, reported, processes)
+    else
+      call work_on_mechanism(options, given, reported, kept)
+    end if
+  end subroutine work_on_model
+
   !> List the files that are read: the data file, those that its groups name, and one of Dakota.
-  pure subroutine list_inputs(path, options, document, inputs)
+  pure subroutine list_inputs(path, options, given, inputs)
     character(len=*), intent(in) :: path                       !< of the data file
     type(command_line_type), intent(in) :: options             !< the command line
-    type(document_type), intent(in) :: document                !< its groups and items
+    class(data_file_type), intent(in) :: given                 !< the data file
     type(string_type), allocatable, intent(out) :: inputs(:)   !< paths of the files that are read
     type(string_type), allocatable :: of_groups(:), of_dakota(:)
     integer :: i, n
 
-    call files_of_groups(document, of_groups)
+    call given%list_files(of_groups)
     call options%arguments('dakota', of_dakota)
     n = min(1, size(of_dakota))
     allocate (inputs(1 + size(of_groups) + n))
@@ -180,17 +168,14 @@ contains
   end subroutine list_inputs
 
   !> Write the report where no run wrote one. A failure to write it is another error; the first error determines the code.
-  subroutine report_briefly(options, model, choice, diagnostics, code)
-    type(command_line_type), intent(in) :: options         !< the command line
-    type(model_type), intent(in) :: model                  !< the model
-    type(diagnostics_type), intent(in) :: choice           !< judgement of the choice of independent coordinates
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets the errors
-    integer, intent(inout) :: code                         !< exit code of the program; of the first error
+  subroutine report_briefly(options, given, code)
+    type(command_line_type), intent(in) :: options      !< the command line
+    class(data_file_type), intent(inout) :: given       !< the data file; it gets the error
+    integer, intent(inout) :: code                      !< exit code of the program; of the first error
     type(error_type), allocatable :: err
 
-    call save_short_report(options%argument('report'), model, code, choice, diagnostics, err)
-    if (.not. allocated(err)) return
-    call diagnostics%add_error(err)
-    if (code == exit_done) code = err%code
+    call save_short_report(options%argument('report'), given%model, code, given%choice, given%diagnostics, err)
+    call given%fail(err)
+    if (allocated(err) .and. code == exit_done) code = err%code
   end subroutine report_briefly
 end module mech9_session

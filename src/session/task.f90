@@ -4,19 +4,14 @@ module mech9_task
   use mech9_program_kind, only: dynamics
   use mech9_error, only: error_type
   use mech9_command_line, only: command_line_type
-  use mech9_diagnostics, only: diagnostics_type
   use mech9_kept_rows, only: kept_rows_type
-  use mech9_model, only: model_type
-  use mech9_variable_model, only: variable_model_type
-  use mech9_model_motion, only: model_motion_type
-  use mech9_run, only: run_type
+  use mech9_data_file, only: data_file_type
   use mech9_equilibrium_task, only: find_rest
   use mech9_linear_task, only: work_on_linear_motion
   use mech9_exponents_task, only: work_on_exponents
   use mech9_periodic_task, only: work_on_periodic
   use mech9_branch_task, only: work_on_branches
   use mech9_cam_task, only: work_on_cams
-  use mech9_law_times, only: check_times_of_laws
   use mech9_picture_requests, only: picture_requests_type, read_picture_requests
   use mech9_assemblies_text, only: print_assemblies
   use mech9_structure_graph, only: save_structure_graph
@@ -33,64 +28,57 @@ module mech9_task
 contains
 
   !> Carry out the options. Errors are added to `diagnostics`, which knows the places in the data file.
-  subroutine work_on_mechanism(options, model, variable, diagnostics, reported, kept)
+  subroutine work_on_mechanism(options, given, reported, kept)
     type(command_line_type), intent(in) :: options          !< the command line
-    type(model_type), intent(in) :: model                   !< the model
-    class(variable_model_type), intent(inout), target :: variable   !< the model as a function of its parameters
-    type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
+    type(data_file_type), intent(inout), target :: given    !< the data file; it gets the errors
     logical, intent(out) :: reported                        !< a report was asked for, and it is written: there was a run
     type(kept_rows_type), intent(inout), optional :: kept   !< gets the rows as well, for a look at them after the run
 
     reported = .false.
     if (options%rest() /= '') then
-      call find_rest(options, model, diagnostics, reported, kept)
+      call find_rest(options, given, reported, kept)
     else if (options%has('at')) then
-      call work_on_linear_motion(options, model, diagnostics)
+      call work_on_linear_motion(options, given)
     else if (options%has('exponents')) then
-      call work_on_exponents(options, model, diagnostics, reported)
+      call work_on_exponents(options, given, reported)
     else if (options%has('periodic')) then
-      call work_on_periodic(options, model, diagnostics, reported, kept)
+      call work_on_periodic(options, given, reported, kept)
     else if (options%has('branch')) then
-      call work_on_branches(options, model, variable, diagnostics, reported)
+      call work_on_branches(options, given, reported)
     else
-      call work_on_motion(options, model, variable, diagnostics, reported, kept)
+      call work_on_motion(options, given, reported, kept)
     end if
   end subroutine work_on_mechanism
 
   !> Make the plan, assemble the mechanism, and run it unless only an answer is requested.
-  subroutine work_on_motion(options, model, variable, diagnostics, reported, kept)
+  subroutine work_on_motion(options, given, reported, kept)
     type(command_line_type), intent(in) :: options          !< the command line
-    type(model_type), intent(in) :: model                   !< the model
-    class(variable_model_type), intent(inout), target :: variable   !< the model as a function of its parameters
-    type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
+    type(data_file_type), intent(inout), target :: given    !< the data file; it gets the errors
     logical, intent(inout) :: reported                      !< the run has written the report
     type(kept_rows_type), intent(inout), optional :: kept   !< gets the rows as well, for a look at them after the run
-    class(model_type), allocatable, target :: used
-    class(run_type), allocatable, target :: run
     type(picture_requests_type) :: pictures
     type(error_type), allocatable :: err
 
     if (options%has('check') .or. options%has('cam') .or. .not. answers_only(options)) &
-      call check_times_of_laws(model, model%program == dynamics .or. model%request%output%with_forces(), diagnostics)
-    if (diagnostics%failed()) return
-    allocate (run)
-    allocate (used, source=model)
-    call read_picture_requests(options, model, pictures, err)
-    if (.not. allocated(err)) call run%motion%assemble(used, err)
+      call given%check_times(given%model%program == dynamics .or. given%model%request%output%with_forces())
+    if (given%failed()) return
+    allocate (given%run)
+    call read_picture_requests(options, given, pictures, err)
+    if (.not. allocated(err)) call given%run%motion%assemble(given%model, err)
     if (.not. (allocated(err) .or. answers_only(options))) then
-      call run%prepare(used, err, variable, pictures%any_wanted())
-    else if (.not. (allocated(err) .or. model%is_driven())) then
-      call run%motion%prepare(used, err, pictures%any_wanted())
+      call given%run%prepare(given%model, err, given%variable, pictures%any_wanted())
+    else if (.not. (allocated(err) .or. given%model%is_driven())) then
+      call given%run%motion%prepare(given%model, err, pictures%any_wanted())
     end if
     if (allocated(err)) then
-      if (options%has('check')) call print_given(output_unit, model, model%program == dynamics)
-      call diagnostics%add_error(err)
+      if (options%has('check')) call print_given(output_unit, given%model, given%model%program == dynamics)
+      call given%fail(err)
     else if (answers_only(options)) then
-      call answer(options, pictures, used, variable, run, diagnostics, reported)
+      call answer(options, pictures, given, reported)
     else
-      call carry_out(options, pictures, used, run, diagnostics, reported, kept)
+      call carry_out(options, pictures, given, reported, kept)
     end if
-    call run%close()
+    call given%close_run()
   end subroutine work_on_motion
 
   !> Whether the options request an answer instead of a run.
@@ -102,72 +90,66 @@ contains
   end function answers_only
 
   !> Give the answers that are requested about an assembled mechanism.
-  subroutine answer(options, pictures, model, variable, run, diagnostics, reported)
+  subroutine answer(options, pictures, given, reported)
     type(command_line_type), intent(in) :: options                  !< the command line
     type(picture_requests_type), intent(in) :: pictures             !< the pictures of the mechanism that are requested
-    type(model_type), intent(in), target :: model                   !< the model
-    class(variable_model_type), intent(inout), target :: variable   !< the model as a function of its parameters
-    type(run_type), intent(inout), target :: run                    !< with its motion assembled, and prepared where it is free
-    type(diagnostics_type), intent(inout) :: diagnostics            !< gets the errors
+    type(data_file_type), intent(inout), target :: given            !< the data file; it gets the errors
     logical, intent(inout) :: reported                              !< the report of cams is written
     type(error_type), allocatable :: err
 
-    call print_check(options, pictures, model, run%motion, diagnostics)
-    if (.not. model%is_driven() .and. (options%has('check') .or. options%has('plan'))) &
-      call print_coefficients(output_unit, model, run%motion)
-    if (options%has('range')) call print_ranges(output_unit, model, run%motion%plan, run%motion%start)
-    if (options%has('check')) call run%check(model, err, variable)
+    call print_check(options, pictures, given)
+    if (.not. given%model%is_driven() .and. (options%has('check') .or. options%has('plan'))) &
+      call print_coefficients(output_unit, given%model, given%run%motion)
+    if (options%has('range')) call print_ranges(output_unit, given%model, given%run%motion%plan, given%run%motion%start)
+    if (options%has('check')) call given%run%check(given%model, err, given%variable)
     if (options%has('cam') .and. .not. allocated(err)) &
-      call work_on_cams(options, model, run%motion, diagnostics, reported, err)
-    if (allocated(err)) call diagnostics%add_error(err)
+      call work_on_cams(options, given, reported, err)
+    call given%fail(err)
   end subroutine answer
 
   !> Carry out --check, --plan, --branches and --graph, and --sketch beside them.
-  subroutine print_check(options, pictures, model, motion, diagnostics)
+  subroutine print_check(options, pictures, given)
     type(command_line_type), intent(in) :: options         !< the command line
     type(picture_requests_type), intent(in) :: pictures    !< the pictures of the mechanism that are requested
-    type(model_type), intent(in) :: model                  !< the model
-    type(model_motion_type), intent(in) :: motion          !< assembled, and prepared where it is free
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets the errors
+    type(data_file_type), intent(inout), target :: given   !< the data file; it gets the errors
     type(error_type), allocatable :: err
 
-    associate (plan => motion%plan, start => motion%start)
+    associate (motion => given%run%motion, plan => given%run%motion%plan, start => given%run%motion%start)
       if (options%has('check')) then
-        call print_mobility_of(output_unit, model%mechanism, motion)
+        call print_mobility_of(output_unit, given%model%mechanism, motion)
       else if (options%has('plan')) then
-        call print_mobility(output_unit, model%mechanism, plan)
+        call print_mobility(output_unit, given%model%mechanism, plan)
       end if
       if (options%has('plan')) then
         if (allocated(motion%simulation)) then
-          call print_plan(output_unit, model%mechanism, plan, motion%simulation%requested)
+          call print_plan(output_unit, given%model%mechanism, plan, motion%simulation%requested)
         else
-          call print_plan_of_results(output_unit, model, plan, pictures%any_wanted())
+          call print_plan_of_results(output_unit, given%model, plan, pictures%any_wanted())
         end if
       end if
-      if (options%has('branches')) call print_assemblies(output_unit, model%mechanism, plan, start, options%number('starts', 100))
-      if (options%has('graph')) call draw_graph(options, model, motion, diagnostics)
+      if (options%has('branches')) &
+        call print_assemblies(output_unit, given%model%mechanism, plan, start, options%number('starts', 100))
+      if (options%has('graph')) call draw_graph(options, given)
       if (options%has('check')) then
-        call print_given(output_unit, model, pictures%with_masses)
-        call print_start(output_unit, model, plan, start, motion%way)
+        call print_given(output_unit, given%model, pictures%with_masses)
+        call print_start(output_unit, given%model, plan, start, motion%way)
       end if
-      if (options%has('sketch')) call pictures%save_start(model, plan, start, err)
-      if (allocated(err)) call diagnostics%add_error(err)
+      if (options%has('sketch')) call pictures%save_start(given%model, plan, start, err)
+      call given%fail(err)
     end associate
   end subroutine print_check
 
   !> Carry out --graph.
-  subroutine draw_graph(options, model, motion, diagnostics)
+  subroutine draw_graph(options, given)
     type(command_line_type), intent(in) :: options         !< the command line
-    type(model_type), intent(in) :: model                  !< the model
-    type(model_motion_type), intent(in) :: motion          !< assembled
-    type(diagnostics_type), intent(inout) :: diagnostics   !< gets the errors
+    type(data_file_type), intent(inout), target :: given   !< the data file; it gets the errors
     type(error_type), allocatable :: err
     character(len=:), allocatable :: said
     logical :: drawn
 
-    call save_structure_graph(options%argument('graph'), model%mechanism, motion%plan, drawn, said, err)
+    call save_structure_graph(options%argument('graph'), given%model%mechanism, given%run%motion%plan, drawn, said, err)
     if (allocated(err)) then
-      call diagnostics%add_error(err)
+      call given%fail(err)
     else if (.not. (drawn .and. options%has('quiet'))) then
       write (error_unit, '(a)') said
     end if

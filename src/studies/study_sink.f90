@@ -3,6 +3,7 @@ module mech9_study_sink
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_run_maker, only: made_run_type
+  use mech9_section_record, only: section_record_type
   use mech9_study_sums, only: study_sums_type
   implicit none
   private
@@ -10,6 +11,7 @@ module mech9_study_sink
 
   type, abstract :: study_sink_type
     integer :: part(2) = 1   !< number of the part of the study that is made, and how many parts there are
+    class(section_record_type), allocatable :: section   !< points of all runs; not allocated: there is none
   contains
     procedure(is_made_interface), deferred :: is_made
     procedure(read_interface), deferred :: read_run

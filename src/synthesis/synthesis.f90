@@ -41,6 +41,7 @@ module mech9_synthesis
     procedure :: add
     procedure :: keep_verified
     procedure :: values_of
+    procedure :: number_in_objective
   end type synthesis_type
 
   !> Designs are the same where their parameters differ by less than this part of their ranges,
@@ -130,6 +131,14 @@ contains
     values = self%space%values
     values(self%space%varied) = self%optima(number)%x
   end function values_of
+
+  !> The number of a target among those of its objective, from 1.
+  pure integer function number_in_objective(self, target)
+    class(synthesis_type), intent(in) :: self      !< the synthesis
+    integer, intent(in) :: target                  !< its number among all
+
+    number_in_objective = count(self%targets(:target)%objective == self%targets(target)%objective)
+  end function number_in_objective
 
   !> The optima that hold.
   pure function pack_optima(optima, holds) result(kept)

@@ -12,7 +12,7 @@ from mech9_cases import TREE, text_of
 FOLDERS = ('src', 'bench', 'user_procs', 'tests')
 
 MANY = 7                   # arguments: more are hard to follow, and some of them then belong together in a type
-MOST_WITH_MORE = 84        # procedures and interfaces of src that have more; the number only goes down
+MOST_WITH_MORE = 79        # procedures and interfaces of src that have more; the number only goes down
 
 STRING = re.compile(r"'[^']*'|\"[^\"]*\"")
 PROCEDURE = re.compile(r'^(?P<before>[^!]*?)\b(?:subroutine|function)\s+(?P<name>\w+)\s*(?:\((?P<arguments>[^)]*)\))?', re.I)

@@ -12,7 +12,7 @@ module mech9_fit_panels
   use mech9_design_motion, only: design_motion_type
   implicit none
   private
-  public :: append_panels
+  public :: append_panels, name_of_objective
 
   !> Places of a curve.
   integer, parameter :: samples = 720
@@ -57,6 +57,26 @@ contains
       end if
     end associate
   end subroutine append_panels
+
+  !> The name of an objective with targets; empty where it has none.
+  function name_of_objective(model, number) result(name)
+    type(model_type), intent(in) :: model    !< with its objectives
+    integer, intent(in) :: number            !< of the objective
+    character(len=:), allocatable :: name
+
+    associate (objective => model%request%objectives(number))
+      select case (objective%kind)
+      case (path_objective)
+        name = model%mechanism%points(objective%point)%name
+      case (function_objective)
+        name = 'q'//to_text(objective%coordinate)
+      case (pose_objective)
+        name = 'link'//to_text(objective%link)
+      case default
+        name = ''
+      end select
+    end associate
+  end function name_of_objective
 
   !> Visit times in their order.
   subroutine visit(motion, number, times, visited, err)

@@ -3,7 +3,7 @@ module mech9_answer_files
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_command_line, only: command_line_type
-  use mech9_model, only: model_type
+  use mech9_data_file, only: data_file_type
   use mech9_heading, only: heading_type
   use mech9_table, only: table_type
   use mech9_hdf5_file, only: hdf5_file_type
@@ -17,10 +17,10 @@ module mech9_answer_files
 contains
 
   !> Save a table.
-  subroutine save_table(path, options, model, heading, rows, err)
+  subroutine save_table(path, options, given, heading, rows, err)
     character(len=*), intent(in) :: path                !< of the file; '-' is standard output, and where it is empty there is no table
     type(command_line_type), intent(in) :: options      !< the command line
-    type(model_type), intent(in) :: model               !< the model
+    type(data_file_type), intent(in) :: given           !< the data file
     type(heading_type), intent(in) :: heading           !< of the columns
     real(wp), intent(in), contiguous :: rows(:, :)      !< (columns, rows)
     type(error_type), allocatable, intent(out) :: err   !< allocated if the file cannot be written
@@ -30,8 +30,8 @@ contains
 
     if (path == '') return
     shown = heading
-    if (options%has('names')) call shown%call_by_names(model%mechanism%names)
-    call table%open(path, shown, name_and_version(model%program), err)
+    if (options%has('names')) call shown%call_by_names(given%model%mechanism%names)
+    call table%open(path, shown, name_and_version(given%model%program), err)
     if (allocated(err)) return
     call table%write_rows(rows, err)
     call table%close(at_close)
@@ -39,19 +39,18 @@ contains
   end subroutine save_table
 
   !> Create an HDF5 file with the origin of its numbers, the structure and the coordinates.
-  subroutine begin_file(path, options, model, data_text, file, err)
+  subroutine begin_file(path, options, given, file, err)
     character(len=*), intent(in) :: path                !< of the file
     type(command_line_type), intent(in) :: options      !< the command line
-    type(model_type), intent(in) :: model               !< the model
-    character(len=*), intent(in) :: data_text           !< text of the data file
+    type(data_file_type), intent(in) :: given           !< the data file
     type(hdf5_file_type), intent(inout) :: file         !< the open file
     type(error_type), allocatable, intent(out) :: err   !< allocated if the file cannot be written
 
     call file%create(path, err)
     if (allocated(err)) return
-    call write_coordinates(file, model)
-    call write_provenance(file, options, model, data_text)
-    call write_structure(file, model)
+    call write_coordinates(file, given%model)
+    call write_provenance(file, options, given)
+    call write_structure(file, given%model)
   end subroutine begin_file
 
   !> Write all to the file and close it.

@@ -1,7 +1,7 @@
 !> The origin of results in an HDF5 file that a program writes, or joins of parts.
 module mech9_hdf5_record
   use mech9_program_kind, only: program_names
-  use mech9_model, only: model_type
+  use mech9_data_file, only: data_file_type
   use mech9_provenance_layout, only: origin_type, write_origin, set_present_time
   use mech9_hdf5_file, only: hdf5_file_type, hdf5_version
   use mech9_hdf5_reading, only: read_text
@@ -13,22 +13,21 @@ module mech9_hdf5_record
 contains
 
   !> Write the origin of the results, with all data that are needed to compute them again.
-  subroutine write_provenance(file, options, model, data_text, created)
+  subroutine write_provenance(file, options, given, created)
     type(hdf5_file_type), intent(inout) :: file      !< the open file
     type(command_line_type), intent(in) :: options   !< the command line
-    type(model_type), intent(in) :: model            !< the model
-    character(len=*), intent(in) :: data_text        !< of the data file, as it is
+    type(data_file_type), intent(in) :: given        !< the data file
     character(len=*), intent(in), optional :: created   !< time when the run began; the present time unless it is given
     type(origin_type) :: origin
 
     call set_present_time(origin%began)
     if (present(created)) origin%began = created
-    origin%program = program_names(model%program)
-    origin%command_line = program_names(model%program)//' '//options%line
+    origin%program = program_names(given%model%program)
+    origin%command_line = program_names(given%model%program)//' '//options%line
     origin%data_file = options%file
-    origin%data = data_text
+    origin%data = given%document%source%text
     origin%storage = hdf5_version()
-    call write_origin(file, model%mechanism%title, origin)
+    call write_origin(file, given%model%mechanism%title, origin)
   end subroutine write_provenance
 
   !> Copy the origin of the first part.

@@ -3,8 +3,7 @@ module mech9_overwriting
   use mech9_error, only: error_type, raise, exit_usage
   use mech9_text, only: string_type
   use mech9_same_file, only: file_place_type, find_place, find_open_place, same_place, is_fifo
-  use mech9_request, only: output_settings_type
-  use mech9_long_term, only: section_type
+  use mech9_data_file, only: data_file_type
   use mech9_command_line, only: command_line_type
   use mech9_written_files, only: written_file_type, list_written_files, standard_output_path
   implicit none
@@ -16,17 +15,16 @@ module mech9_overwriting
 contains
 
   !> Fail with exit_usage where a file of the input, or another result, would be written over.
-  subroutine refuse_overwriting(options, inputs, err, output, section)
+  subroutine refuse_overwriting(options, inputs, err, given)
     type(command_line_type), intent(in) :: options               !< the command line
     type(string_type), intent(in) :: inputs(:)                   !< paths of the files that are read
     type(error_type), allocatable, intent(out) :: err            !< allocated if it failed
-    type(output_settings_type), intent(in), optional :: output   !< the group &output of the data file, once it is understood
-    type(section_type), intent(in), optional :: section          !< the group &section
+    class(data_file_type), intent(in), optional :: given         !< the data file, once it is understood
     type(written_file_type), allocatable :: files(:)
     type(file_place_type), allocatable :: places(:)
     integer :: i
 
-    call list_written_files(options, files, output, section)
+    call list_written_files(options, files, given)
     allocate (places(size(files)))
     do i = 1, size(files)
       if (files(i)%path == standard_output_path) then

@@ -3,8 +3,7 @@ module mech9_results
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: string_type
-  use mech9_model, only: model_type
-  use mech9_columns, only: columns_type
+  use mech9_data_file, only: data_file_type
   use mech9_result_sink, only: result_sink_type, sink_slot_type, append_sink
   use mech9_heading, only: heading_type, heading_of
   use mech9_table, only: table_type
@@ -43,12 +42,10 @@ module mech9_results
 contains
 
   !> Open all requested results. After an error none is open.
-  subroutine open_results(self, options, model, data_text, columns, err)
+  subroutine open_results(self, options, given, err)
     class(results_type), intent(out) :: self            !< the results
     type(command_line_type), intent(in) :: options      !< the command line
-    type(model_type), intent(in) :: model               !< the model
-    character(len=*), intent(in) :: data_text           !< of the data file
-    type(columns_type), intent(in) :: columns           !< of the rows to come
+    type(data_file_type), intent(in) :: given           !< the data file
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(result_paths_type) :: paths
     type(error_type), allocatable :: at_close
@@ -56,15 +53,15 @@ contains
     integer :: i
 
     allocate (self%sinks(0))
-    self%n_columns = columns%count
-    call find_result_paths(options, model%request%output, paths)
+    self%n_columns = given%run%source%columns%count
+    call find_result_paths(options, paths, given)
     self%table_path = paths%table
     self%hdf5_path = paths%hdf5
     ! a wrong name in a plot is found before a file is touched
-    call self%open_plots(options, model, columns, plots, err)
-    if (.not. allocated(err) .and. self%table_path /= '') call self%open_table(options, model, columns, err)
+    call self%open_plots(options, given, plots, err)
+    if (.not. allocated(err) .and. self%table_path /= '') call self%open_table(options, given, err)
     if (.not. allocated(err) .and. self%hdf5_path /= '') &
-      call self%open_hdf5(options, model, data_text, columns, err)
+      call self%open_hdf5(options, given, err)
     if (allocated(err)) then
       call self%close(at_close)
       return
@@ -75,11 +72,10 @@ contains
   end subroutine open_results
 
   !> Open the requested plots.
-  subroutine open_plots(self, options, model, columns, plots, err)
+  subroutine open_plots(self, options, given, plots, err)
     class(results_type), intent(in) :: self                      !< the results
     type(command_line_type), intent(in) :: options               !< the command line
-    type(model_type), intent(in) :: model                        !< the model
-    type(columns_type), intent(in) :: columns                    !< names and units of the columns
+    type(data_file_type), intent(in) :: given                    !< the data file
     type(sink_slot_type), allocatable, intent(out) :: plots(:)   !< one sink for each plot
     type(error_type), allocatable, intent(out) :: err            !< allocated if it failed
     type(string_type), allocatable :: requests(:)
@@ -90,20 +86,20 @@ contains
     integer :: i
 
     allocate (plots(0))
-    call list_plot_requests(options, model%mechanism%names, requests)
-    heading = heading_of(model%mechanism%title, columns)
+    call list_plot_requests(options, given%model%mechanism%names, requests)
+    heading = heading_of(given%model%mechanism%title, given%run%source%columns)
     labels = heading
-    call labels%call_by_names(model%mechanism%names)
+    call labels%call_by_names(given%model%mechanism%names)
     if (options%has('names')) heading = labels
     do i = 1, size(requests)
       if (is_of_section(requests(i)%text)) cycle
       call picture_of_plot(requests(i)%text, self%table_path, options%file, i, picture)
       allocate (plot)
-      call plot%open(requests(i)%text, heading_of(model%mechanism%title, columns), model%request%time%intervals + 1, picture, &
-                     self%table_path, err)
+      call plot%open(requests(i)%text, heading_of(given%model%mechanism%title, given%run%source%columns), &
+                     given%model%request%time%intervals + 1, picture, self%table_path, err)
       if (.not. allocated(err)) call plot%call_columns(heading%names, labels%names)
       if (allocated(err)) then
-        if (leaves_out(model)) err%message = err%message//' (&output coordinates, derivatives or energies leave some out)'
+        if (leaves_out(given)) err%message = err%message//' (&output coordinates, derivatives or energies leave some out)'
         return
       end if
       call move_alloc(plot, sink)
@@ -112,19 +108,18 @@ contains
   end subroutine open_plots
 
   !> Whether the results have fewer columns than they could have.
-  pure logical function leaves_out(model)
-    type(model_type), intent(in) :: model       !< the model
+  pure logical function leaves_out(given)
+    type(data_file_type), intent(in) :: given   !< the data file
 
-    associate (output => model%request%output)
-      leaves_out = output%derivatives < 2 .or. .not. (output%energies .and. all(output%recorded(size(model%mechanism%pairs))))
+    associate (output => given%model%request%output)
+      leaves_out = output%derivatives < 2 .or. .not. (output%energies .and. all(output%recorded(size(given%model%mechanism%pairs))))
     end associate
   end function leaves_out
 
-  subroutine open_table(self, options, model, columns, err)
+  subroutine open_table(self, options, given, err)
     class(results_type), intent(inout) :: self          !< the results
     type(command_line_type), intent(in) :: options      !< the command line
-    type(model_type), intent(in) :: model               !< the model
-    type(columns_type), intent(in) :: columns           !< names and units of the columns
+    type(data_file_type), intent(in) :: given           !< the data file
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(table_type), allocatable :: table
     class(result_sink_type), allocatable :: sink
@@ -132,35 +127,38 @@ contains
     integer, allocatable :: order(:)
 
     allocate (table)
-    heading = heading_of(model%mechanism%title, columns)
-    if (options%has('names')) call heading%call_by_names(model%mechanism%names)
-    if (columns%sensitivities > 0) order = columns%order_in_table()
-    call table%open(self%table_path, heading, name_and_version(model%program), err, order)
+    heading = heading_of(given%model%mechanism%title, given%run%source%columns)
+    if (options%has('names')) call heading%call_by_names(given%model%mechanism%names)
+    if (given%run%source%columns%sensitivities > 0) order = given%run%source%columns%order_in_table()
+    call table%open(self%table_path, heading, name_and_version(given%model%program), err, order)
     if (allocated(err)) return
     call move_alloc(table, sink)
     call append_sink(self%sinks, sink)
   end subroutine open_table
 
-  subroutine open_hdf5(self, options, model, data_text, columns, err)
+  subroutine open_hdf5(self, options, given, err)
     class(results_type), intent(inout) :: self          !< the results
     type(command_line_type), intent(in) :: options      !< the command line
-    type(model_type), intent(in) :: model               !< the model
-    character(len=*), intent(in) :: data_text           !< text of the data file, kept in the file
-    type(columns_type), intent(in) :: columns           !< names and units of the columns
+    type(data_file_type), intent(in) :: given           !< the data file
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(hdf5_sink_type), allocatable :: file
     class(result_sink_type), allocatable :: sink
+    integer :: i
 
     allocate (file)
-    call file%open(self%hdf5_path, model%mechanism, model%request, columns, err)
+    call file%open(self%hdf5_path, given%model%mechanism, given%model%request, &
+                   given%run%source%columns, err)
     if (allocated(err)) return
-    call write_provenance(file%file, options, model, data_text)
-    call write_structure(file%file, model)
+    call write_provenance(file%file, options, given)
+    call write_structure(file%file, given%model)
     call file%tell(err)
     call move_alloc(file, sink)
     call append_sink(self%sinks, sink)
-    if (columns%poses%n_links == 0) return
-    allocate (sink, source=new_xdmf(self%hdf5_path, model%mechanism%title, model%request%time, columns%poses))
+    if (given%run%source%columns%poses%n_links == 0) return
+    associate (time => given%model%request%time)
+      allocate (sink, source=new_xdmf(self%hdf5_path, given%model%mechanism%title, [(time%time(i), i=0, time%intervals)], &
+                                      given%run%source%columns%poses))
+    end associate
     call append_sink(self%sinks, sink)
   end subroutine open_hdf5
 

@@ -2,8 +2,6 @@
 module mech9_written_files
   use mech9_text, only: string_type
   use mech9_part_names, only: part_names_type, number_columns
-  use mech9_request, only: output_settings_type
-  use mech9_long_term, only: section_type
   use mech9_replacement, only: path_of_part
   use mech9_plot, only: picture_of_plot
   use mech9_plot_drawing, only: script_of_plot
@@ -11,6 +9,7 @@ module mech9_written_files
   use mech9_mp4_film, only: frames_of_video
   use mech9_structure_graph, only: text_of_graph
   use mech9_xdmf, only: xdmf_path
+  use mech9_data_file, only: data_file_type
   use mech9_command_line, only: command_line_type
   use mech9_cam_files, only: cam_file_type, read_cam_file
   implicit none
@@ -38,21 +37,30 @@ contains
 
   !> Choose the paths of the results of a run: the command line comes before the data file. If no result is requested,
   !> the table is written to standard output.
-  pure subroutine find_result_paths(options, output, paths)
-    type(command_line_type), intent(in) :: options     !< the command line
-    type(output_settings_type), intent(in) :: output   !< the group &output of the data file
-    type(result_paths_type), intent(out) :: paths      !< of table, HDF5 file and others
+  pure subroutine find_result_paths(options, paths, given)
+    type(command_line_type), intent(in) :: options               !< the command line
+    type(result_paths_type), intent(out) :: paths                !< of table, HDF5 file and others
+    class(data_file_type), intent(in), optional :: given         !< the data file; without one the options alone name results
 
-    call choose(options, 'table', output%table, paths%table)
-    call choose(options, 'hdf5', output%hdf5, paths%hdf5)
-    if (options%has('continue')) paths%hdf5 = options%argument('continue')
-    call choose(options, 'sketch', output%sketch, paths%sketch)
-    if (options%has('animate')) then
-      call options%arguments('animate', paths%animations)
+    if (present(given)) then
+      associate (output => given%model%request%output)
+        paths%table = output%table
+        paths%hdf5 = output%hdf5
+        paths%sketch = output%sketch
+        allocate (paths%animations(merge(1, 0, output%animation /= '')))
+        if (output%animation /= '') paths%animations(1)%text = output%animation
+      end associate
     else
-      allocate (paths%animations(merge(1, 0, output%animation /= '')))
-      if (output%animation /= '') paths%animations(1)%text = output%animation
+      paths%table = ''
+      paths%hdf5 = ''
+      paths%sketch = ''
+      allocate (paths%animations(0))
     end if
+    call choose(options, 'table', paths%table)
+    call choose(options, 'hdf5', paths%hdf5)
+    call choose(options, 'continue', paths%hdf5)
+    call choose(options, 'sketch', paths%sketch)
+    if (options%has('animate')) call options%arguments('animate', paths%animations)
     if (options%has('study') .or. options%has('branch')) then
       ! they draw no pictures of the mechanism
       paths%sketch = ''
@@ -67,44 +75,43 @@ contains
     end if
   end subroutine find_result_paths
 
-  pure subroutine choose(options, option, in_data_file, path)
-    type(command_line_type), intent(in) :: options       !< the command line
-    character(len=*), intent(in) :: option               !< without the dashes
-    character(len=*), intent(in) :: in_data_file         !< the path there; empty: none
-    character(len=:), allocatable, intent(out) :: path   !< path of the option, else of the data file
+  !> Take the path that an option names, in place of that of the data file.
+  pure subroutine choose(options, option, path)
+    type(command_line_type), intent(in) :: options                  !< the command line
+    character(len=*), intent(in) :: option                          !< without the dashes
+    character(len=:), allocatable, intent(inout) :: path            !< of the data file; of the option where it is given
 
-    path = in_data_file
     if (options%has(option)) path = options%argument(option)
   end subroutine choose
 
-  !> List the files. Without `output` the data file could not be read, and only a report is written.
-  pure subroutine list_written_files(options, files, output, section)
+  !> List the files. Where a data file is neither read nor needed, only a report is written.
+  pure subroutine list_written_files(options, files, given)
     type(command_line_type), intent(in) :: options                  !< the command line
     type(written_file_type), allocatable, intent(out) :: files(:)   !< all files that are going to be written
-    type(output_settings_type), intent(in), optional :: output      !< the group &output of the data file
-    type(section_type), intent(in), optional :: section             !< the group &section of the data file
+    class(data_file_type), intent(in), optional :: given            !< the data file, once it is understood
 
     allocate (files(0))
-    if (present(output) .and. (options%answer() == '' .or. options%has('branch'))) then
-      call list_results(options, output, files)
-      if (present(section) .and. .not. any([options%has('study'), options%has('optimize'), options%has('branch'), &
-                                            options%has('no-write')])) &
-        call append(files, '&section table', section%table)
-    else if (present(output)) then
+    if ((present(given) .and. (options%answer() == '' .or. options%has('branch'))) .or. options%has('merge')) then
+      call list_results(options, files, given)
+      if (present(given) .and. .not. any([options%has('study'), options%has('optimize'), options%has('branch'), &
+                                          options%has('no-write')])) &
+        call append(files, '&section table', given%model%request%section%table)
+    else if (present(given)) then
       call list_answers(options, files)
     end if
     if (options%has('report')) call append(files, '--report', options%argument('report'))
   end subroutine list_written_files
 
-  !> Add the files that a run writes.
-  pure subroutine list_results(options, output, files)
+  !> Add the files that a run writes, or the parts of a study or a search that are merged.
+  pure subroutine list_results(options, files, given)
     type(command_line_type), intent(in) :: options                    !< the command line
-    type(output_settings_type), intent(in) :: output                  !< the group &output of the data file
     type(written_file_type), allocatable, intent(inout) :: files(:)   !< gets the results
+    class(data_file_type), intent(in), optional :: given              !< the data file
     type(result_paths_type) :: paths
+    logical :: has_poses
     integer :: i
 
-    call find_result_paths(options, output, paths)
+    call find_result_paths(options, paths, given)
     if (paths%table == standard_output_path) then
       call append(files, 'the table', paths%table)
     else
@@ -117,7 +124,9 @@ contains
       call append(files, name_of(options, 'hdf5', 'hdf5'), paths%hdf5)
     end if
     if (paths%hdf5 /= '') call append(files, 'the beginning of the HDF5 file', path_of_part(paths%hdf5))
-    if (paths%hdf5 /= '' .and. output%poses) &
+    has_poses = .false.
+    if (present(given)) has_poses = given%model%request%output%poses
+    if (paths%hdf5 /= '' .and. has_poses) &
       call append(files, 'the description for ParaView beside the HDF5 file', xdmf_path(paths%hdf5))
     call list_plots(options, paths%table, files)
     call append(files, name_of(options, 'sketch', 'sketch'), paths%sketch)

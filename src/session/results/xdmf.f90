@@ -7,7 +7,6 @@ module mech9_xdmf
   use mech9_error, only: error_type
   use mech9_text, only: to_text
   use mech9_path, only: name_of, with_ending
-  use mech9_request, only: time_grid_type
   use mech9_poses, only: poses_type
   use mech9_result_sink, only: result_sink_type
   use mech9_page, only: page_type
@@ -25,7 +24,7 @@ module mech9_xdmf
     character(len=:), allocatable :: path        !< file of the description
     character(len=:), allocatable :: data_name   !< name of the HDF5 file, without its folder
     character(len=:), allocatable :: title
-    type(time_grid_type) :: grid
+    real(wp), allocatable :: times(:)            !< (outputs) [s]
     integer :: n_vertices = 0, n_lines = 0
     integer :: rows = 0
     logical :: is_open = .false.
@@ -38,17 +37,17 @@ module mech9_xdmf
 contains
 
   !> The description of an HDF5 file that will be written. It has the name of this file with the ending .xdmf.
-  pure function new_xdmf(hdf5_path, title, grid, poses) result(sink)
+  pure function new_xdmf(hdf5_path, title, times, poses) result(sink)
     character(len=*), intent(in) :: hdf5_path      !< name of the HDF5 file
     character(len=*), intent(in) :: title          !< title of the mechanism
-    type(time_grid_type), intent(in) :: grid       !< times of the results
+    real(wp), intent(in) :: times(:)               !< (outputs) times of the results [s]
     type(poses_type), intent(in) :: poses          !< vertices and lines that show the links
     type(xdmf_type) :: sink
 
     sink%data_name = name_of(hdf5_path)
     sink%path = xdmf_path(hdf5_path)
     sink%title = title
-    sink%grid = grid
+    sink%times = times
     sink%n_vertices = size(poses%vertex_link)
     sink%n_lines = size(poses%lines, 2)
     sink%is_open = .true.
@@ -102,7 +101,7 @@ contains
 
     vertices = to_text(self%n_vertices)//' 3'
     lines = to_text(self%n_lines)
-    call page%line('<Grid Name="links"><Time Value="'//to_text(self%grid%time(row), 17)//'"/>')
+    call page%line('<Grid Name="links"><Time Value="'//to_text(self%times(row + 1), 17)//'"/>')
     call page%line('<Topology TopologyType="Polyline" NodesPerElement="2" NumberOfElements="'//lines//'">'// &
                    item(self, lines//' 2', 'Int', 'shape/line')//'</Topology>')
     call page%line('<Geometry GeometryType="XYZ"><DataItem ItemType="HyperSlab" Dimensions="'//vertices//'">'// &

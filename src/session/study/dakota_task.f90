@@ -7,12 +7,8 @@ module mech9_dakota_task
   use mech9_error, only: error_type, raise, exit_data, exit_singular, exit_interrupted
   use mech9_text, only: string_type, nearest_name
   use mech9_command_line, only: command_line_type
-  use mech9_diagnostics, only: diagnostics_type
-  use mech9_explanation, only: explain
-  use mech9_model, only: model_type
-  use mech9_variable_model, only: variable_model_type
-  use mech9_quantity_record, only: quantity_record_type
-  use mech9_design_run, only: run_design, find_design_gradient, find_quantities
+  use mech9_data_file, only: data_file_type
+  use mech9_evaluated_design, only: check_quantities, evaluate_design
   use mech9_signal_interruption, only: signal_interruption_type
   use mech9_dakota_file, only: dakota_request_type, read_dakota, write_dakota_failure, write_dakota_results
   implicit none
@@ -28,42 +24,39 @@ contains
 
   !> Make the run that Dakota asks for, and write its quantities. A run that fails is reported to Dakota, and is no
   !> failure of the program. A request that cannot be understood is one, and leaves no results.
-  subroutine work_for_dakota(options, varied, model, diagnostics)
+  subroutine work_for_dakota(options, given)
     type(command_line_type), intent(in) :: options          !< the command line, with --dakota
-    class(variable_model_type), intent(inout) :: varied     !< the model as a function of its parameters
-    type(model_type), intent(in) :: model                   !< the model with the values of the data file
-    type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
+    type(data_file_type), intent(inout), target :: given    !< the data file; it gets the errors
     type(string_type), allocatable :: paths(:)
     type(dakota_request_type) :: request
-    type(quantity_record_type) :: columns
     type(error_type), allocatable :: err
     integer, allocatable :: parameters(:), quantities(:)
 
     call options%arguments('dakota', paths)
-    call find_quantities(model, columns, err)
+    call check_quantities(given, err)
     if (.not. allocated(err)) call read_dakota(paths(1)%text, request, err)
-    if (.not. allocated(err)) call match_names(model, paths(1)%text, request, parameters, quantities, err)
-    if (.not. allocated(err)) call evaluate(varied, model, request, parameters, quantities, paths(2)%text, &
+    if (.not. allocated(err)) call match_names(given, paths(1)%text, request, parameters, quantities, err)
+    if (.not. allocated(err)) call evaluate(given, request, parameters, quantities, paths(2)%text, &
                                             options%has('quiet'), err)
-    if (allocated(err)) call diagnostics%add_error(err)
+    call given%fail(err)
   end subroutine work_for_dakota
 
   !> Find the parameters and quantities that Dakota means, and refuse what it cannot have.
-  subroutine match_names(model, path, request, parameters, quantities, err)
-    type(model_type), intent(in) :: model                   !< the model
+  subroutine match_names(given, path, request, parameters, quantities, err)
+    type(data_file_type), intent(in) :: given               !< the data file
     character(len=*), intent(in) :: path                    !< of the parameters file
     type(dakota_request_type), intent(in) :: request        !< the evaluation
     integer, allocatable, intent(out) :: parameters(:)      !< (variables) number of the parameter of each
     integer, allocatable, intent(out) :: quantities(:)      !< (responses) number of the quantity of each
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    character(len=longest_name) :: of_parameters(size(model%parameters)), of_quantities(size(model%request%quantities))
+    character(len=longest_name) :: of_parameters(size(given%model%parameters)), of_quantities(size(given%model%request%quantities))
     integer :: i
 
     do i = 1, size(of_parameters)
-      of_parameters(i) = model%parameters(i)%name
+      of_parameters(i) = given%model%parameters(i)%name
     end do
     do i = 1, size(of_quantities)
-      of_quantities(i) = model%request%quantities(i)%name
+      of_quantities(i) = given%model%request%quantities(i)%name
     end do
     call match(request%variables, of_parameters, path, 'variable', '&parameter', parameters, err)
     if (.not. allocated(err)) call match(request%responses, of_quantities, path, 'response', '&quantity', quantities, err)
@@ -102,9 +95,8 @@ contains
   end subroutine match
 
   !> Make the run and write its results, or that it failed.
-  subroutine evaluate(varied, model, request, parameters, quantities, path, quiet, err)
-    class(variable_model_type), intent(inout) :: varied     !< the model as a function of its parameters
-    type(model_type), intent(in) :: model                   !< the model with the values of the data file
+  subroutine evaluate(given, request, parameters, quantities, path, quiet, err)
+    type(data_file_type), intent(inout), target :: given    !< the data file
     type(dakota_request_type), intent(in) :: request        !< the evaluation
     integer, intent(in) :: parameters(:)                    !< (variables) number of the parameter of each
     integer, intent(in) :: quantities(:)                    !< (responses) number of the quantity of each
@@ -112,22 +104,23 @@ contains
     logical, intent(in) :: quiet                            !< a failure is not told
     type(error_type), allocatable, intent(out) :: err       !< allocated if the results cannot be written
     type(error_type), allocatable :: failure
-    real(wp) :: present(size(model%parameters)), numbers(size(model%request%quantities))
-    real(wp) :: gradient(size(model%parameters), size(model%request%quantities))
+    type(signal_interruption_type), target :: interruption
+    real(wp) :: present(size(given%model%parameters)), numbers(size(given%model%request%quantities))
+    real(wp) :: gradient(size(given%model%parameters), size(given%model%request%quantities))
 
-    present = model%parameters%value
+    present = given%model%parameters%value
     present(parameters) = request%values
-    call run_at(varied, present, request%wants(gradients), quiet, numbers, gradient, failure)
+    call interruption%words%start(given%model%program, 'no result yet', 'the run', quiet, with_progress=.false.)
+    call evaluate_design(given, present, request%wants(gradients), interruption, numbers, gradient, failure)
     if (.not. allocated(failure)) &
       call check_numbers(request, numbers(quantities), gradient(parameters(request%by), quantities), failure)
     if (allocated(failure)) then
-      call explain(failure)
       if (failure%code == exit_interrupted) then
         ! an evaluation that the user ends has no result; Dakota would take a failure for one
         call move_alloc(failure, err)
         return
       end if
-      if (.not. quiet) write (error_unit, '(4a)') program_names(model%program), ': ', 'the run failed: ', failure%message
+      if (.not. quiet) write (error_unit, '(4a)') program_names(given%model%program), ': ', 'the run failed: ', failure%message
       call write_dakota_failure(path, failure%message, err)
     else
       call write_dakota_results(path, request, numbers(quantities), gradient(parameters(request%by), quantities), err)
@@ -153,28 +146,4 @@ contains
       if (allocated(err)) return
     end do
   end subroutine check_numbers
-
-  !> Make a run with values of the parameters.
-  subroutine run_at(varied, values, with_gradient, quiet, numbers, gradient, err)
-    class(variable_model_type), intent(inout) :: varied     !< the model as a function of its parameters
-    real(wp), intent(in) :: values(:)                       !< (parameters) in the units of the file
-    logical, intent(in) :: with_gradient                    !< derivatives are taken
-    logical, intent(in) :: quiet                            !< nothing is said of a run that takes long
-    real(wp), intent(out) :: numbers(:)                     !< (quantities)
-    real(wp), intent(out) :: gradient(:, :)                 !< (parameters,quantities)
-    type(error_type), allocatable, intent(out) :: err       !< allocated if the run failed
-    type(model_type), target :: model
-    type(signal_interruption_type) :: interruption
-
-    numbers = 0.0_wp
-    gradient = 0.0_wp
-    call varied%at(values, model, err)
-    if (allocated(err)) return
-    call interruption%words%start(model%program, 'no result yet', 'the run', quiet, with_progress=.false.)
-    if (with_gradient) then
-      call find_design_gradient(model, varied, numbers, gradient, err, interruption)
-    else
-      call run_design(model, numbers, err, interruption=interruption)
-    end if
-  end subroutine run_at
 end module mech9_dakota_task

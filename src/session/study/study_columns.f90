@@ -7,7 +7,7 @@ module mech9_study_columns
   use mech9_kinds, only: wp
   use mech9_text, only: string_type
   use mech9_error, only: error_type, raise, exit_data
-  use mech9_model, only: model_type
+  use mech9_data_file, only: data_file_type
   use mech9_columns, only: columns_type
   use mech9_hdf5_file, only: hdf5_file_type
   use mech9_column_sets, only: column_set_list_type, new_column_set, scale_length
@@ -42,13 +42,13 @@ module mech9_study_columns
 contains
 
   !> Fail with exit_data where the runs of a study do not have the same times, because a parameter sets these.
-  subroutine refuse_varied_times(model, err)
-    type(model_type), intent(in) :: model               !< the model with the values of the data file
+  subroutine refuse_varied_times(given, err)
+    type(data_file_type), intent(in) :: given           !< the data file
     type(error_type), allocatable, intent(out) :: err   !< allocated if a parameter does so
     integer :: i, k
 
-    do i = 1, size(model%parameters)
-      associate (parameter => model%parameters(i))
+    do i = 1, size(given%model%parameters)
+      associate (parameter => given%model%parameters(i))
         do k = 1, size(parameter%targets)
           if (parameter%targets(k)%group /= 'time') cycle
           call raise(err, exit_data, "parameter '"//parameter%name//"' sets "//trim(parameter%targets(k)%name)// &
@@ -74,22 +74,22 @@ contains
   end function numbers_of_run
 
   !> Make the data sets for the runs of a model in a new file, with their scales; all numbers are NaN.
-  subroutine create(self, file, columns, model, runs)
+  subroutine create(self, file, columns, given, runs)
     class(study_columns_type), intent(inout) :: self   !< the columns
     type(hdf5_file_type), intent(inout) :: file        !< the open file, with the scale `run`
     type(columns_type), intent(in) :: columns          !< of a run
-    type(model_type), intent(in) :: model              !< the model with the values of the data file
+    type(data_file_type), intent(in) :: given          !< the data file
     integer, intent(in) :: runs                        !< how many the file has
     type(string_type), allocatable :: names(:)
     integer :: i
 
-    call self%begin(columns, model, runs)
+    call self%begin(columns, given, runs)
     call self%series%create(file)
-    associate (time => model%request%time)
+    associate (time => given%model%request%time)
       call file%put('time', [(time%time(i), i=0, time%intervals)], 'time', columns%units(1)%text)
     end associate
     call file%make_scale('time')
-    call put_scales(file, model%mechanism, columns)
+    call put_scales(file, given%model%mechanism, columns)
     call self%series%attach(file)
     call self%series%list_names(names)
     call file%put('study/columns', names, 'data sets over the runs and time')
@@ -118,14 +118,14 @@ contains
 
   !> Open the data sets of a file that is continued. It is a failure of the file where they are not those of the runs of
   !> the model.
-  subroutine open_columns(self, file, columns, model, runs)
+  subroutine open_columns(self, file, columns, given, runs)
     class(study_columns_type), intent(inout) :: self   !< the columns
     type(hdf5_file_type), intent(inout) :: file        !< the open file
     type(columns_type), intent(in) :: columns          !< of a run
-    type(model_type), intent(in) :: model              !< the model with the values of the data file
+    type(data_file_type), intent(in) :: given          !< the data file
     integer, intent(in) :: runs                        !< how many the file has
 
-    call self%begin(columns, model, runs)
+    call self%begin(columns, given, runs)
     call self%series%open(file)
   end subroutine open_columns
 
@@ -142,18 +142,18 @@ contains
   end subroutine open_unknown
 
   !> Prepare the data sets of a model.
-  subroutine begin(self, columns, model, runs)
+  subroutine begin(self, columns, given, runs)
     class(study_columns_type), intent(inout) :: self   !< the columns
     type(columns_type), intent(in) :: columns          !< of a run
-    type(model_type), intent(in) :: model              !< the model with the values of the data file
+    type(data_file_type), intent(in) :: given          !< the data file
     integer, intent(in) :: runs                        !< how many the file has
     type(column_layout_type) :: layout
     type(column_set_list_type) :: list
 
-    layout%times = model%request%time%intervals + 1
+    layout%times = given%model%request%time%intervals + 1
     self%numbers = columns%width()*layout%times
     self%runs = runs
-    call layout%add(list, model%mechanism, columns)
+    call layout%add(list, given%model%mechanism, columns)
     call self%series%start_fixed(list%count, self%numbers, runs, .true.)
     call self%series%add_all(list)
   end subroutine begin

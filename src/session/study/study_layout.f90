@@ -1,8 +1,7 @@
 !> Names and units of what the file of a study holds, from its model or from a file.
 module mech9_study_layout
   use mech9_text, only: string_type
-  use mech9_result_units, only: unit_of_parameter
-  use mech9_model, only: model_type
+  use mech9_data_file, only: data_file_type
   use mech9_hdf5_file, only: hdf5_file_type
   use mech9_hdf5_reading, only: read_text, read_texts, read_integer, has_data_set
   use mech9_quantity_record, only: quantity_record_type
@@ -37,26 +36,22 @@ contains
   end function runs_of_part
 
   !> Form the layout of a study.
-  subroutine layout_of(model, quantities, definition, part, layout)
-    type(model_type), intent(in) :: model                     !< the model with the values of the data file
+  subroutine layout_of(given, quantities, definition, part, layout)
+    type(data_file_type), intent(in) :: given                 !< the data file
     type(quantity_record_type), intent(in) :: quantities      !< with their columns
     character(len=*), intent(in) :: definition                !< text that determines the numbers of the study
     integer, intent(in) :: part(2)                            !< number of the part, and how many parts there are
     type(study_layout_type), intent(out) :: layout            !< names and units
     integer :: i
 
-    layout%title = model%mechanism%title
-    layout%kind = trim(model%request%study%kind)
+    layout%title = given%model%mechanism%title
+    layout%kind = trim(given%model%request%study%kind)
     layout%definition = definition
-    layout%runs = model%request%study%runs
+    layout%runs = given%model%request%study%runs
     layout%part = part
     allocate (layout%columns(0))
-    allocate (layout%parameters(size(model%parameters)), layout%parameter_units(size(model%parameters)))
-    do i = 1, size(layout%parameters)
-      layout%parameters(i)%text = model%parameters(i)%name
-      layout%parameter_units(i)%text = trim(unit_of_parameter(model%mechanism, model%parameters(i)))
-    end do
-    associate (requested => model%request%quantities)
+    call given%list_parameters(layout%parameters, layout%parameter_units)
+    associate (requested => given%model%request%quantities)
       allocate (layout%quantities(size(requested)), layout%units(size(requested)), layout%meanings(size(requested)))
       do i = 1, size(requested)
         layout%quantities(i)%text = requested(i)%name

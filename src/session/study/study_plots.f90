@@ -3,7 +3,7 @@ module mech9_study_plots
   use mech9_error, only: error_type
   use mech9_text, only: string_type
   use mech9_command_line, only: command_line_type
-  use mech9_model, only: model_type
+  use mech9_data_file, only: data_file_type
   use mech9_plot, only: picture_of_plot
   use mech9_plot_request, only: is_of_section
   use mech9_study_plot, only: study_plot_type
@@ -25,10 +25,10 @@ module mech9_study_plots
 contains
 
   !> Read the requests before the runs. A wrong one is an error of the command line.
-  subroutine open_plots(self, options, model, quantities, table, err)
+  subroutine open_plots(self, options, given, quantities, table, err)
     class(study_plots_type), intent(inout) :: self         !< the plots
     type(command_line_type), intent(in) :: options         !< the command line
-    type(model_type), intent(in) :: model                  !< with its parameters and quantities
+    type(data_file_type), intent(in) :: given              !< the data file
     type(quantity_record_type), intent(in) :: quantities   !< with their columns
     character(len=*), intent(in) :: table                  !< file of the table; empty or '-': none
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
@@ -36,14 +36,14 @@ contains
     character(len=:), allocatable :: picture
     integer :: i, k, n
 
-    n = size(model%parameters)
-    allocate (names(n + size(model%request%quantities)), units(n + size(model%request%quantities)))
+    n = size(given%model%parameters)
+    allocate (names(n + size(given%model%request%quantities)), units(n + size(given%model%request%quantities)))
     do i = 1, n
-      names(i)%text = model%parameters(i)%name
+      names(i)%text = given%model%parameters(i)%name
       units(i)%text = ''
     end do
-    do i = 1, size(model%request%quantities)
-      names(n + i)%text = model%request%quantities(i)%name
+    do i = 1, size(given%model%request%quantities)
+      names(n + i)%text = given%model%request%quantities(i)%name
       units(n + i)%text = quantities%unit_of(i)
     end do
     call options%arguments('plot', requests)
@@ -54,7 +54,7 @@ contains
       if (is_of_section(requests(i)%text)) cycle
       k = k + 1
       call picture_of_plot(requests(i)%text, table, options%file, i, picture)
-      call self%plots(k)%open(requests(i)%text, new_heading(model%mechanism%title, names, units), n, picture, err)
+      call self%plots(k)%open(requests(i)%text, new_heading(given%model%mechanism%title, names, units), n, picture, err)
       if (allocated(err)) return
     end do
   end subroutine open_plots

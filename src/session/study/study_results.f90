@@ -2,13 +2,11 @@
 module mech9_study_results
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_file
-  use mech9_text, only: to_text
+  use mech9_text, only: string_type, to_text
   use mech9_program_kind, only: program_names
   use mech9_version, only: name_and_version
   use mech9_command_line, only: command_line_type
-  use mech9_document, only: document_type
-  use mech9_result_units, only: unit_of_parameter
-  use mech9_model, only: model_type
+  use mech9_data_file, only: data_file_type
   use mech9_columns, only: columns_type
   use mech9_table, only: table_type
   use mech9_progress, only: progress_type
@@ -23,7 +21,6 @@ module mech9_study_results
   use mech9_study_layout, only: study_layout_type, layout_of
   use mech9_design_run, only: columns_of_runs
   use mech9_hdf5_record, only: write_provenance
-  use mech9_section_record, only: section_record_type
   use mech9_study_section, only: begin_section, add_points
   use mech9_section_layout, only: write_section
   implicit none
@@ -36,7 +33,6 @@ module mech9_study_results
     type(study_file_type), private :: file          !< of HDF5
     type(progress_type), private :: progress        !< shown on a terminal
     real(wp), allocatable, private :: row(:)        !< of the table
-    class(section_record_type), allocatable :: section   !< points of all runs; not allocated: there is none
   contains
     procedure :: open => open_results
     procedure :: is_made
@@ -51,11 +47,10 @@ module mech9_study_results
 contains
 
   !> Open the files that are asked for. After an error none is open, and none has changed where the other one cannot be opened.
-  subroutine open_results(self, options, document, model, quantities, err)
+  subroutine open_results(self, options, given, quantities, err)
     class(study_results_type), intent(out) :: self            !< the files
     type(command_line_type), intent(in) :: options            !< the command line
-    type(document_type), intent(in) :: document               !< the data file as groups and items, with the changes by --set
-    type(model_type), intent(in) :: model                     !< the model with the values of the data file
+    type(data_file_type), intent(in) :: given                 !< the data file
     type(quantity_record_type), intent(in) :: quantities      !< with their columns
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
     type(columns_type) :: columns
@@ -63,51 +58,52 @@ contains
     type(study_layout_type) :: layout
     character(len=:), allocatable :: definition
 
-    call find_result_paths(options, model%request%output, self%paths)
+    call find_result_paths(options, self%paths, given)
     self%part = options%part()
-    call begin_section(model, self%section, err)
+    call begin_section(given%model, self%section, err)
     if (allocated(err)) return
     if (self%paths%hdf5 /= '') then
-      call define_study(model%program, document, definition, err)
+      call define_study(given, definition, err)
       if (allocated(err)) return
       if (options%has('continue')) then
         call continue_file(self, options, definition, err)
       else
-        call layout_of(model, quantities, definition, self%part, layout)
+        call layout_of(given, quantities, definition, self%part, layout)
         call self%file%create(self%paths%hdf5, layout, err)
-        if (.not. allocated(err)) call write_provenance(self%file%file, options, model, document%source%text)
+        if (.not. allocated(err)) call write_provenance(self%file%file, options, given)
       end if
-      if (.not. allocated(err) .and. model%request%output%hdf5_runs) call begin_columns(self, options, model, err)
+      if (.not. allocated(err) .and. given%model%request%output%hdf5_runs) call begin_columns(self, options, given, err)
       if (allocated(err)) then
         call self%close(at_close)
         return
       end if
     end if
-    columns = columns_of_study(model, quantities)
+    columns = columns_of_study(given, quantities)
     allocate (self%row(columns%count), source=0.0_wp)
     if (self%paths%table /= '') &
-      call self%table%open(self%paths%table, heading_of(model%mechanism%title, columns), name_and_version(model%program), err)
+      call self%table%open(self%paths%table, heading_of(given%model%mechanism%title, columns), &
+                           name_and_version(given%model%program), err)
     if (.not. allocated(err) .and. self%paths%hdf5 /= '' .and. .not. options%has('continue')) call self%file%publish(err)
     if (allocated(err)) then
       call self%close(at_close)
     else
-      call self%progress%start(program_names(model%program), options%has('quiet'))
+      call self%progress%start(program_names(given%model%program), options%has('quiet'))
     end if
   end subroutine open_results
 
   !> Begin the columns of all runs in the HDF5 file, which is new or continued.
-  subroutine begin_columns(self, options, model, err)
+  subroutine begin_columns(self, options, given, err)
     class(study_results_type), intent(inout) :: self          !< the files
     type(command_line_type), intent(in) :: options            !< the command line
-    type(model_type), intent(in) :: model                     !< the model with the values of the data file
+    type(data_file_type), intent(in) :: given                 !< the data file
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
     type(columns_type) :: columns
 
-    call columns_of_runs(model, columns)
+    call columns_of_runs(given%model, columns)
     if (options%has('continue')) then
-      call self%file%open_columns(columns, model, err)
+      call self%file%open_columns(columns, given, err)
     else
-      call self%file%create_columns(columns, model, err)
+      call self%file%create_columns(columns, given, err)
     end if
   end subroutine begin_columns
 
@@ -129,19 +125,21 @@ contains
   end subroutine continue_file
 
   !> The columns of the table of a study.
-  function columns_of_study(model, quantities) result(columns)
-    type(model_type), intent(in) :: model                  !< the model
+  function columns_of_study(given, quantities) result(columns)
+    type(data_file_type), intent(in) :: given              !< the data file
     type(quantity_record_type), intent(in) :: quantities   !< with their columns
     type(columns_type) :: columns
+    type(string_type), allocatable :: names(:), units(:)
     integer :: i
 
     allocate (columns%names(0), columns%units(0), columns%long_names(0))
     call columns%append('run', '')
-    do i = 1, size(model%parameters)
-      call columns%append(model%parameters(i)%name, trim(unit_of_parameter(model%mechanism, model%parameters(i))))
+    call given%list_parameters(names, units)
+    do i = 1, size(names)
+      call columns%append(names(i)%text, units(i)%text)
     end do
-    do i = 1, size(model%request%quantities)
-      call columns%append(model%request%quantities(i)%name, quantities%unit_of(i))
+    do i = 1, size(given%model%request%quantities)
+      call columns%append(given%model%request%quantities(i)%name, quantities%unit_of(i))
     end do
     call columns%append('exit_code', '')
   end function columns_of_study

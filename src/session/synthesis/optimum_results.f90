@@ -6,10 +6,8 @@ module mech9_optimum_results
   use mech9_error, only: error_type
   use mech9_version, only: name_and_version
   use mech9_command_line, only: command_line_type
-  use mech9_document, only: document_type
-  use mech9_diagnostics, only: diagnostics_type
-  use mech9_result_units, only: unit_of_parameter
-  use mech9_model, only: model_type
+  use mech9_text, only: string_type
+  use mech9_data_file, only: data_file_type
   use mech9_columns, only: columns_type
   use mech9_table, only: table_type
   use mech9_heading, only: heading_of
@@ -30,29 +28,27 @@ module mech9_optimum_results
 contains
 
   !> Open the files of a search, before it begins.
-  subroutine open_results(options, document, model, synthesis, starts, table, err)
+  subroutine open_results(options, given, synthesis, starts, table, err)
     type(command_line_type), intent(in) :: options          !< the command line
-    type(document_type), intent(in) :: document             !< the data file as groups and items, with the changes by --set
-    type(model_type), intent(in) :: model                   !< the model
+    type(data_file_type), intent(in) :: given               !< the data file
     type(synthesis_type), intent(in) :: synthesis           !< prepared
     type(starts_type), intent(inout) :: starts              !< gets room, and the open file
     type(table_type), intent(inout) :: table                !< is open, if one is requested
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     type(error_type), allocatable :: at_close
 
-    call open_starts(options, document, model, synthesis, starts, err)
-    if (allocated(err) .or. table_of(options, model) == '') return
-    call open_table(table_of(options, model), model, table, err)
+    call open_starts(options, given, synthesis, starts, err)
+    if (allocated(err) .or. table_of(options, given) == '') return
+    call open_table(table_of(options, given), given, table, err)
     if (allocated(err)) call starts%file%close(at_close)
   end subroutine open_results
 
   !> Make room for all starts, read those that were made before, and open the HDF5 file, where one is requested. A file
   !> that is continued is written anew, with all places and with the starts that it has. Until that is done it stays as
   !> it is.
-  subroutine open_starts(options, document, model, synthesis, starts, err)
+  subroutine open_starts(options, given, synthesis, starts, err)
     type(command_line_type), intent(in) :: options          !< the command line
-    type(document_type), intent(in) :: document             !< the data file as groups and items, with the changes by --set
-    type(model_type), intent(in) :: model                   !< the model
+    type(data_file_type), intent(in) :: given               !< the data file
     type(synthesis_type), intent(in) :: synthesis           !< prepared
     type(starts_type), intent(inout) :: starts              !< gets room, and the open file
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
@@ -61,17 +57,17 @@ contains
     type(starts_layout_type) :: layout
     character(len=:), allocatable :: definition
 
-    allocate (starts%made(model%request%optimum%starts))
+    allocate (starts%made(given%model%request%optimum%starts))
     starts%part = options%part()
-    call find_result_paths(options, model%request%output, paths)
+    call find_result_paths(options, paths, given)
     if (paths%hdf5 == '') return
-    call define_study(model%program, document, definition, err)
+    call define_study(given, definition, err)
     if (allocated(err)) return
-    call find_layout(model, synthesis, definition, layout)
+    call find_layout(given, synthesis, definition, layout)
     if (options%has('continue')) call read_starts(paths%hdf5, layout, starts%made, err)
-    if (.not. allocated(err)) call starts%file%create(paths%hdf5, model, layout, .false., err)
+    if (.not. allocated(err)) call starts%file%create(paths%hdf5, given, layout, .false., err)
     if (allocated(err)) return
-    call write_provenance(starts%file%file, options, model, document%source%text)
+    call write_provenance(starts%file%file, options, given)
     call write_made(starts)
     call starts%file%publish(err)
     if (.not. allocated(err)) return
@@ -90,10 +86,9 @@ contains
 
   !> Write the file anew, with the designs, and close it. Where that fails, as on a full disk, the file stays as it is,
   !> with all starts. The search can then be continued.
-  subroutine write_whole_file(options, document, model, synthesis, starts, err)
+  subroutine write_whole_file(options, given, synthesis, starts, err)
     type(command_line_type), intent(in) :: options          !< the command line
-    type(document_type), intent(in) :: document             !< the data file
-    type(model_type), intent(in) :: model                   !< the model
+    type(data_file_type), intent(in) :: given               !< the data file
     type(synthesis_type), intent(in) :: synthesis           !< with its optima, best first
     type(starts_type), intent(inout) :: starts              !< with the open file, which is closed
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
@@ -105,48 +100,46 @@ contains
     layout = starts%file%layout
     call read_text(starts%file%file, 'provenance/created', created)
     call starts%file%close(err)
-    if (.not. allocated(err)) call starts%file%create(path, model, layout, .true., err)
+    if (.not. allocated(err)) call starts%file%create(path, given, layout, .true., err)
     if (allocated(err)) return
-    call write_provenance(starts%file%file, options, model, document%source%text, created)
+    call write_provenance(starts%file%file, options, given, created)
     call write_made(starts)
-    call write_optima(starts%file%file, model, synthesis)
+    call write_optima(starts%file%file, given%model, synthesis)
     call starts%file%publish(err)
     call starts%file%close(at_close)
     if (.not. allocated(err)) call move_alloc(at_close, err)
   end subroutine write_whole_file
 
   !> The path of the table; '-' is standard output; empty: no table.
-  function table_of(options, model) result(path)
+  function table_of(options, given) result(path)
     type(command_line_type), intent(in) :: options   !< the command line
-    type(model_type), intent(in) :: model            !< the model
+    type(data_file_type), intent(in) :: given        !< the data file
     character(len=:), allocatable :: path
     type(result_paths_type) :: paths
 
-    call find_result_paths(options, model%request%output, paths)
+    call find_result_paths(options, paths, given)
     path = paths%table
   end function table_of
 
   !> Write the table and the HDF5 data of the distinct designs, and the data file of the best one.
-  subroutine write_results(options, document, model, synthesis, starts, table, diagnostics)
+  subroutine write_results(options, given, synthesis, starts, table)
     type(command_line_type), intent(in) :: options          !< the command line
-    type(document_type), intent(in) :: document             !< the data file
-    type(model_type), intent(in) :: model                   !< the model
+    type(data_file_type), intent(inout) :: given            !< the data file; it gets the errors
     type(synthesis_type), intent(in) :: synthesis           !< with its optima, best first
     type(starts_type), intent(inout) :: starts              !< with the open file, which is closed
     type(table_type), intent(inout) :: table                !< the open table, which is closed
-    type(diagnostics_type), intent(inout) :: diagnostics    !< gets the errors
     character(len=:), allocatable :: path, text
     type(error_type), allocatable :: err
 
-    path = table_of(options, model)
-    if (path /= '') call write_table(table, model, synthesis, err)
+    path = table_of(options, given)
+    if (path /= '') call write_table(table, given, synthesis, err)
     call tell(err, 'table', path)
     path = ''
     if (starts%file%is_open()) path = starts%file%file%path
-    if (path /= '') call write_whole_file(options, document, model, synthesis, starts, err)
+    if (path /= '') call write_whole_file(options, given, synthesis, starts, err)
     call tell(err, 'HDF5 file', path)
     if (.not. options%has('out') .or. size(synthesis%optima) == 0) return
-    call text_of_best(document, model, synthesis, text)
+    call text_of_best(given%document, given%model, synthesis, text)
     path = options%argument('out')
     call replace_text(path, text, err)
     call tell(err, 'best design', path)
@@ -158,7 +151,7 @@ contains
       character(len=*), intent(in) :: place                     !< its path; empty where there is none
 
       if (allocated(failure)) then
-        call diagnostics%add_error(failure)
+        call given%fail(failure)
         deallocate (failure)
       else if (place /= '' .and. place /= standard_output_path .and. .not. options%has('quiet')) then
         write (error_unit, '(3a)') name, ': ', place
@@ -167,34 +160,36 @@ contains
   end subroutine write_results
 
   !> Open the table of the distinct designs.
-  subroutine open_table(path, model, table, err)
+  subroutine open_table(path, given, table, err)
     character(len=*), intent(in) :: path                    !< of the table; '-' is standard output
-    type(model_type), intent(in) :: model                   !< the model
+    type(data_file_type), intent(in) :: given               !< the data file
     type(table_type), intent(inout) :: table                !< the table
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     type(columns_type) :: columns
+    type(string_type), allocatable :: names(:), units(:)
     integer :: i
 
     allocate (columns%names(0), columns%units(0), columns%long_names(0))
     call columns%append('value', '')
-    do i = 1, size(model%parameters)
-      call columns%append(model%parameters(i)%name, trim(unit_of_parameter(model%mechanism, model%parameters(i))))
+    call given%list_parameters(names, units)
+    do i = 1, size(names)
+      call columns%append(names(i)%text, units(i)%text)
     end do
     call columns%append('starts', '')
-    call table%open(path, heading_of(model%mechanism%title, columns), name_and_version(model%program), err)
+    call table%open(path, heading_of(given%model%mechanism%title, columns), name_and_version(given%model%program), err)
   end subroutine open_table
 
   !> Write a row for each distinct design, best first, and close the table.
-  subroutine write_table(table, model, synthesis, err)
+  subroutine write_table(table, given, synthesis, err)
     type(table_type), intent(inout) :: table                !< the open table
-    type(model_type), intent(in) :: model                   !< the model
+    type(data_file_type), intent(in) :: given               !< the data file
     type(synthesis_type), intent(in) :: synthesis           !< with its optima, best first
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     type(error_type), allocatable :: at_close
-    real(wp) :: row(size(model%parameters) + 2)
+    real(wp) :: row(size(given%model%parameters) + 2)
     integer :: i, n
 
-    n = size(model%parameters)
+    n = size(given%model%parameters)
     do i = 1, size(synthesis%optima)
       row(1) = synthesis%optima(i)%value
       row(2:n + 1) = synthesis%values_of(i)

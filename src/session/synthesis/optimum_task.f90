@@ -6,10 +6,7 @@ module mech9_optimum_task
   use mech9_text, only: string_type, to_text
   use mech9_clock, only: seconds
   use mech9_command_line, only: command_line_type
-  use mech9_document, only: document_type
-  use mech9_diagnostics, only: diagnostics_type
-  use mech9_model, only: model_type
-  use mech9_variable_model, only: variable_model_type
+  use mech9_data_file, only: data_file_type
   use mech9_study_threads, only: threads_for
   use mech9_processes, only: processes_type
   use mech9_search, only: optimum_search_type, check_request
@@ -29,12 +26,9 @@ module mech9_optimum_task
 contains
 
   !> Carry out the search that a data file describes.
-  subroutine work_on_optimum(options, document, variable, model, diagnostics, reported, processes)
+  subroutine work_on_optimum(options, given, reported, processes)
     type(command_line_type), intent(in) :: options                  !< the command line
-    type(document_type), intent(in) :: document                     !< the data file
-    class(variable_model_type), intent(inout), target :: variable   !< the model as a function of its parameters
-    type(model_type), intent(in) :: model                           !< the model with the values of the data file
-    type(diagnostics_type), intent(inout) :: diagnostics            !< gets the errors
+    type(data_file_type), intent(inout), target :: given            !< the data file; it gets the errors
     logical, intent(out) :: reported                                !< a report was asked for, and it is written
     type(processes_type), intent(inout) :: processes                !< those that make the starts together
     type(optimum_search_type), allocatable, target :: search
@@ -49,64 +43,64 @@ contains
     reported = .false.
     allocate (search)
     clock = seconds()
-    call check_request(model, err)
+    call check_request(given%model, err)
     if (.not. allocated(err)) call refuse_changed_design(options, err)
-    if (.not. allocated(err)) call refuse_empty_part(options, model, err)
-    if (.not. allocated(err) .and. processes%is_first) call pictures%open(options, model, err)
+    if (.not. allocated(err)) call refuse_empty_part(options, given, err)
+    if (.not. allocated(err) .and. processes%is_first) call pictures%open(options, given, err)
     if (.not. allocated(err)) then
-      call interruption%words%start(model%program, 'no result of a run of the search', 'it', options%has('quiet'), &
+      call interruption%words%start(given%model%program, 'no result of a run of the search', 'it', options%has('quiet'), &
                                     with_progress=.false.)
-      call search%prepare(variable, model, interruption, err)
+      call search%prepare(given%variable, given%model, interruption, err)
     end if
     call processes%agree(err)
     if (.not. allocated(err)) then
-      if (processes%is_first) call open_results(options, document, model, search%synthesis, starts, table, err)
+      if (processes%is_first) call open_results(options, given, search%synthesis, starts, table, err)
       call processes%agree(err)
     end if
     if (.not. processes%is_first) then
       reported = .true.
-      if (.not. allocated(err)) call search%follow(model)
+      if (.not. allocated(err)) call search%follow(given%model)
       return
     end if
     if (allocated(err)) then
-      call diagnostics%add_error(err)
+      call given%fail(err)
       return
     end if
     if (.not. options%has('quiet')) call print_differences(error_unit, search)
-    call starts%begin_shown(model%program, options%has('quiet'))
-    call search%make(model, processes, threads_of(options, model), starts, err)
-    if (.not. options%has('quiet')) call print_optimum(error_unit, model, search%synthesis, seconds() - clock)
-    if (allocated(err)) call diagnostics%add_error(err)
-    call write_results(options, document, model, search%synthesis, starts, table, diagnostics)
-    call pictures%draw(options, variable, search%synthesis, diagnostics)
+    call starts%begin_shown(given%model%program, options%has('quiet'))
+    call search%make(given%model, processes, threads_of(options, given), starts, err)
+    if (.not. options%has('quiet')) call print_optimum(error_unit, given%model, search%synthesis, seconds() - clock)
+    call given%fail(err)
+    call write_results(options, given, search%synthesis, starts, table)
+    call pictures%draw(options, given, search%synthesis)
     if (.not. options%has('report')) return
-    call begin_report(json, model, diagnostics, table_of(options, model))
-    call add_optimum(json, model, search%synthesis)
+    call begin_report(json, given%model, given%diagnostics, table_of(options, given))
+    call add_optimum(json, given%model, search%synthesis)
     call json%end_object()
     call json%save(options%argument('report'), err)
     reported = .true.
-    if (allocated(err)) call diagnostics%add_error(err)
+    call given%fail(err)
   end subroutine work_on_optimum
 
   !> How many threads make the starts.
-  integer function threads_of(options, model) result(threads)
+  integer function threads_of(options, given) result(threads)
     type(command_line_type), intent(in) :: options        !< the command line
-    type(model_type), intent(in) :: model                 !< the model
+    type(data_file_type), intent(in) :: given             !< the data file
 
-    threads = options%number('threads', threads_for(model))
+    threads = options%number('threads', threads_for(given%model))
   end function threads_of
 
   !> Refuse a part that has no starts.
-  subroutine refuse_empty_part(options, model, err)
+  subroutine refuse_empty_part(options, given, err)
     type(command_line_type), intent(in) :: options        !< the command line
-    type(model_type), intent(in) :: model                 !< the model
+    type(data_file_type), intent(in) :: given             !< the data file
     type(error_type), allocatable, intent(out) :: err     !< allocated if it has none
     integer :: part(2)
 
     part = options%part()
-    if (part(1) > model%request%optimum%starts) &
+    if (part(1) > given%model%request%optimum%starts) &
       call raise(err, exit_usage, '--part '//options%argument('part')//' has no starts: the search has '// &
-                 to_text(model%request%optimum%starts)//'; give fewer parts, or more starts in &optimum')
+                 to_text(given%model%request%optimum%starts)//'; give fewer parts, or more starts in &optimum')
   end subroutine refuse_empty_part
 
   !> Refuse to write a data file that would not have the changes by --set.

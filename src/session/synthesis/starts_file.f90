@@ -5,7 +5,7 @@ module mech9_starts_file
   use mech9_kinds, only: wp
   use mech9_text, only: string_type, to_text
   use mech9_error, only: error_type
-  use mech9_model, only: model_type
+  use mech9_data_file, only: data_file_type
   use mech9_hdf5_file, only: hdf5_file_type
   use mech9_column_sets, only: new_column_set
   use mech9_hdf5_series, only: hdf5_series_type
@@ -52,35 +52,35 @@ module mech9_starts_file
 contains
 
   !> Form the layout of a search.
-  subroutine find_layout(model, synthesis, definition, layout)
-    type(model_type), intent(in) :: model                 !< the model
+  subroutine find_layout(given, synthesis, definition, layout)
+    type(data_file_type), intent(in) :: given             !< the data file
     type(synthesis_type), intent(in) :: synthesis         !< prepared
     character(len=*), intent(in) :: definition            !< text that determines the search but for the number of starts
     type(starts_layout_type), intent(out) :: layout       !< names and extents
     integer :: i
 
     layout%definition = definition
-    layout%seed = model%request%optimum%seed
-    layout%wanted = model%request%optimum%starts
+    layout%seed = given%model%request%optimum%seed
+    layout%wanted = given%model%request%optimum%starts
     layout%row = row_of_synthesis(synthesis)
     allocate (layout%names(layout%row%parameters))
     do i = 1, size(layout%names)
-      layout%names(i)%text = model%parameters(synthesis%space%varied(i))%name
+      layout%names(i)%text = given%model%parameters(synthesis%space%varied(i))%name
     end do
   end subroutine find_layout
 
   !> Create the file with all its places. It gets its name with `publish`; a file of that name stays until then.
-  subroutine create(self, path, model, layout, at_end, err)
+  subroutine create(self, path, given, layout, at_end, err)
     class(starts_file_type), intent(out) :: self        !< the file
     character(len=*), intent(in) :: path                !< of the file
-    type(model_type), intent(in) :: model               !< the model
+    type(data_file_type), intent(in) :: given           !< the data file
     type(starts_layout_type), intent(in) :: layout      !< of the search
     logical, intent(in) :: at_end                       !< the search is over
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
     call begin_file(self, path, layout, err)
     if (allocated(err)) return
-    call write_coordinates(self%file, model)
+    call write_coordinates(self%file, given%model)
     call complete_file(self, at_end, err)
   end subroutine create
 

@@ -5,7 +5,7 @@ module test_picture_requests
   use mech9_error, only: error_type, exit_data, exit_usage
   use mech9_command_line, only: command_line_type
   use mech9_explained_assembly, only: assemble_model
-  use mech9_model, only: model_type
+  use mech9_data_file, only: data_file_type
   use mech9_picture_requests, only: picture_requests_type, read_picture_requests
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -41,12 +41,12 @@ contains
     character(len=*), intent(in) :: more                   !< further groups of the data file
     type(picture_requests_type), intent(out) :: requests   !< pictures
     type(error_type), allocatable, intent(out) :: err      !< allocated if they are refused
-    type(model_type) :: model
+    type(data_file_type) :: given
     type(command_line_type) :: options
 
-    call model_from_text(tester, driven//more, kinematics, model)
+    call model_from_text(tester, driven//more, kinematics, given%model)
     call options_of(tester, line, options)
-    call read_picture_requests(options, model, requests, err)
+    call read_picture_requests(options, given, requests, err)
   end subroutine ask
 
   !> Options come before names of the data file.
@@ -106,7 +106,7 @@ contains
   subroutine start(tester)
     type(tester_type), intent(inout) :: tester   !< counts the checks
     character(len=*), parameter :: sketch = 'test_picture_requests.svg', film = 'test_picture_requests.html'
-    type(model_type) :: model
+    type(data_file_type) :: given
     type(command_line_type) :: options
     type(picture_requests_type) :: requests
     type(plan_type) :: plan
@@ -118,12 +118,12 @@ contains
 
     call remove_file(sketch)
     call remove_file(film)
-    call model_from_text(tester, driven, kinematics, model)
+    call model_from_text(tester, driven, kinematics, given%model)
     call options_of(tester, 'a.nml --sketch '//sketch//' --animate '//film, options)
-    call read_picture_requests(options, model, requests, err)
-    call assemble_model(model, plan, position, err)
+    call read_picture_requests(options, given, requests, err)
+    call assemble_model(given%model, plan, position, err)
     call tester%no_error(err, 'the start')
-    call requests%save_start(model, plan, position, err)
+    call requests%save_start(given%model, plan, position, err)
     call tester%no_error(err, 'the sketch is saved')
     inquire (file=film, exist=exists)
     call tester%is_true(.not. exists, 'no film')

@@ -13,6 +13,7 @@ module test_recording
   use mech9_hdf5_reading, only: open_existing, read_text, has_data_set
   use mech9_kept_rows, only: kept_rows_type
   use mech9_model, only: model_type
+  use mech9_data_file, only: data_file_type
   use mech9_plan, only: plan_type
   use mech9_run_outcome, only: run_outcome_type
   use mech9_recording, only: record
@@ -20,7 +21,7 @@ module test_recording
   use mech9_row_source, only: row_source_type, new_row_source
   use mech9_state, only: state_type
   use mech9_small_models, only: slider_crank, crank, rod, eol
-  use mech9_text_models, only: model_from_text
+  use mech9_text_models, only: document_from_text, model_from_text
   use mech9_test_files, only: remove_file, text_of_file
   use mech9_testing, only: tester_type
   use option_words, only: options_of
@@ -47,32 +48,31 @@ contains
     character(len=*), parameter :: data = slider_crank//"&drive coordinate=1, kind='polynomial', coefficients=0.2, 3 /"//eol// &
       '&time end=2, intervals=300 /'//eol//"&load kind='coordinate', coordinate=4, force=-2 /"//eol// &
       '&output drive_forces=.true., reactions=.true., reaction_pairs=4 /'//eol
-    type(model_type), target :: model
-    type(plan_type) :: plan
-    type(state_type) :: start
-    type(driven_simulation_type), allocatable, target :: simulation
-    type(row_source_type), allocatable :: source
+    type(data_file_type), target :: given
     type(command_line_type) :: options
     type(results_type) :: results
     type(run_outcome_type) :: outcome
     type(kept_rows_type) :: kept
     type(error_type), allocatable :: err
 
-    call model_from_text(tester, data, kinematics, model)
-    call tester%is_true(all(reacting_pairs(model) .eqv. [.false., .false., .false., .true.]), 'one pair has its forces recorded')
-    call assemble_model(model, plan, start, err)
+    call document_from_text(tester, data, given%document)
+    call model_from_text(tester, data, kinematics, given%model)
+    call tester%is_true(all(reacting_pairs(given%model) .eqv. [.false., .false., .false., .true.]), &
+                        'one pair has its forces recorded')
+    allocate (given%run)
+    call given%run%motion%assemble(given%model, err)
     call tester%no_error(err, 'the start')
-    allocate (simulation, source)
-    call new_driven_simulation(model, plan, start, simulation)
-    call new_row_source(simulation, source)
+    call given%run%prepare(given%model, err)
+    call tester%no_error(err, 'the run is prepared')
     call options_of(tester, 'a.nml --table '//stem//'.dat --hdf5 '//stem//'.h5 --quiet', options)
-    call results%open(options, model, data, source%columns, err)
+    call results%open(options, given, err)
     call tester%no_error(err, 'files are opened')
-    call record(source, model, results, .true., outcome, err, kept)
+    call record(given, results, .true., outcome, err, kept)
     call tester%no_error(err, 'the run is recorded')
     call results%close(err)
     call tester%no_error(err, 'files are closed')
     call tester%is_true(outcome%rows == n + 1, 'a row for each output')
+    call given%close_run()
     call check_rows(tester, kept)
     call check_files(tester, data)
   end subroutine driven_run

@@ -8,6 +8,7 @@ module test_structure_words
   use mech9_held_text, only: print_held
   use mech9_mobility_report, only: mobility_report_type, report_mobility
   use mech9_model, only: model_type
+  use mech9_data_file, only: data_file_type
   use mech9_part_names, only: part_names_type
   use mech9_plan, only: plan_type
   use mech9_plan_text, only: print_plan
@@ -229,14 +230,14 @@ contains
       character(len=*), intent(in) :: line       !< command line
       character(len=*), intent(in) :: expected   !< the right notes
       type(command_line_type) :: options
-      type(model_type) :: model
+      type(data_file_type) :: given
       character(len=:), allocatable :: text
       integer :: unit
 
       call options_of(tester, line, options)
-      call model_from_text(tester, slider_crank, dynamics, model)
+      call model_from_text(tester, slider_crank, dynamics, given%model)
       open (newunit=unit, file=path)
-      call print_unused_options(unit, options, model)
+      call print_unused_options(unit, options, given)
       call text_of_unit(tester, unit, text)
       call tester%is_true(text == expected, 'notes on '//line//': '//text)
     end subroutine says

@@ -11,7 +11,7 @@ module test_study_columns
   use mech9_hdf5_reading, only: open_existing, read_texts
   use mech9_column_sets, only: new_column_set
   use mech9_hdf5_series, only: hdf5_series_type
-  use mech9_model, only: model_type
+  use mech9_data_file, only: data_file_type
   use mech9_study_columns, only: study_columns_type, refuse_varied_times
   use mech9_study_filling, only: fill_rows
   use mech9_text, only: string_type
@@ -44,20 +44,20 @@ contains
   subroutine write_file(tester, numbers)
     type(tester_type), intent(inout) :: tester                 !< counts the checks
     real(wp), allocatable, intent(out) :: numbers(:)           !< of the third run
-    type(model_type) :: model
+    type(data_file_type) :: given
     type(columns_type) :: columns
     type(study_columns_type) :: runs_columns
     type(hdf5_file_type) :: file
     type(error_type), allocatable :: err
     integer :: i
 
-    call model_from_text(tester, data, kinematics, model)
-    columns = kinematic_columns(model%mechanism, model%request%output)
+    call model_from_text(tester, data, kinematics, given%model)
+    columns = kinematic_columns(given%model%mechanism, given%model%request%output)
     call file%create(path, err)
     call tester%no_error(err, 'a file')
     call file%put('run', [(i, i=1, runs)], 'number of the run')
     call file%make_scale('run')
-    call runs_columns%create(file, columns, model, runs)
+    call runs_columns%create(file, columns, given, runs)
     call tester%is_true(runs_columns%are_there() .and. runs_columns%numbers_of_run() == 3*columns%width(), 'three times of a run')
     numbers = [(0.5_wp*i, i=1, runs_columns%numbers_of_run())]
     call file%flush()
@@ -146,14 +146,14 @@ contains
   !> Runs with other times have no common columns.
   subroutine varied_times(tester)
     type(tester_type), intent(inout) :: tester   !< counts the checks
-    type(model_type) :: model
+    type(data_file_type) :: given
     type(error_type), allocatable :: err
 
-    call model_from_text(tester, data//"&parameter name='a', sets='pair(2).point(1)' /"//eol, kinematics, model)
-    call refuse_varied_times(model, err)
+    call model_from_text(tester, data//"&parameter name='a', sets='pair(2).point(1)' /"//eol, kinematics, given%model)
+    call refuse_varied_times(given, err)
     call tester%no_error(err, 'a length may vary')
-    call model_from_text(tester, data//"&parameter name='e', sets='time.end' /"//eol, kinematics, model)
-    call refuse_varied_times(model, err)
+    call model_from_text(tester, data//"&parameter name='e', sets='time.end' /"//eol, kinematics, given%model)
+    call refuse_varied_times(given, err)
     call has_message(tester, err, exit_data, "parameter 'e' sets time.end, and hdf5_runs=.true.", 'a time may not')
   end subroutine varied_times
 end module test_study_columns

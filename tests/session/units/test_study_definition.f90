@@ -1,8 +1,7 @@
 !> The text by which studies are compared: blind to what changes no numbers, different for all else; and its digest.
 module test_study_definition
-  use mech9_program_kind, only: kinematics
   use mech9_error, only: error_type, exit_file
-  use mech9_document, only: document_type
+  use mech9_data_file, only: data_file_type
   use mech9_study_definition, only: define_study, tell_difference, digest_of
   use mech9_small_models, only: slider_crank, eol
   use mech9_text_models, only: document_from_text
@@ -32,11 +31,11 @@ contains
     type(tester_type), intent(inout) :: tester                 !< counts the checks
     character(len=*), intent(in) :: text                       !< of the data file
     character(len=:), allocatable, intent(out) :: definition   !< its definition
-    type(document_type) :: document
+    type(data_file_type) :: given
     type(error_type), allocatable :: err
 
-    call document_from_text(tester, text, document)
-    call define_study(kinematics, document, definition, err)
+    call document_from_text(tester, text, given%document)
+    call define_study(given, definition, err)
     call tester%no_error(err, 'a study is defined')
   end subroutine define
 
@@ -81,7 +80,7 @@ contains
     type(tester_type), intent(inout) :: tester   !< counts the checks
     character(len=*), parameter :: text = slider_crank//"&drive coordinate=1, kind='table', file='"//path//"' /"//eol
     character(len=:), allocatable :: one, other
-    type(document_type) :: document
+    type(data_file_type) :: given
     type(error_type), allocatable :: err
 
     call save_lines(tester, path, ['0 1', '1 2'])
@@ -93,8 +92,8 @@ contains
     call define(tester, text, other)
     call tester%is_true(one == other, 'the same bytes do not')
     call remove_file(path)
-    call document_from_text(tester, text, document)
-    call define_study(kinematics, document, other, err)
+    call document_from_text(tester, text, given%document)
+    call define_study(given, other, err)
     call tester%has_error(err, exit_file, 'a file that is not there')
   end subroutine files
 

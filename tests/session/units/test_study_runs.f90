@@ -5,10 +5,8 @@ module test_study_runs
   use mech9_kinds, only: wp
   use mech9_command_line, only: command_line_type
   use mech9_design_run, only: find_quantities
-  use mech9_diagnostics, only: diagnostics_type
-  use mech9_document, only: document_type
   use mech9_error, only: error_type, exit_done, exit_usage
-  use mech9_model, only: model_type
+  use mech9_data_file, only: data_file_type
   use mech9_quantity_record, only: quantity_record_type
   use mech9_run_evaluator, only: used_quantities
   use mech9_run_maker, only: run_maker_type, made_run_type
@@ -20,7 +18,6 @@ module test_study_runs
   use mech9_study_runs, only: study_runs_type, all_handed_out, wait_for_others
   use mech9_study_threads, only: make_in_threads, threads_of_machine
   use mech9_study_words, only: print_study
-  use mech9_varied_document, only: varied_document_type, new_varied_document
   use mech9_checks, only: near_vector
   use mech9_small_models, only: slider_crank, eol
   use mech9_text_models, only: document_from_text, model_from_text
@@ -41,9 +38,7 @@ module test_study_runs
 
   !> All that the runs of a study need.
   type :: study_case_type
-    type(document_type) :: document
-    type(model_type) :: model
-    type(varied_document_type) :: varied
+    type(data_file_type) :: given
     type(quantity_record_type) :: quantities
   end type study_case_type
 
@@ -64,15 +59,14 @@ contains
     type(tester_type), intent(inout) :: tester       !< counts the checks
     character(len=*), intent(in) :: text             !< of the data file
     type(study_case_type), intent(out) :: this       !< its study
-    type(diagnostics_type) :: diagnostics
     type(error_type), allocatable :: err
     integer :: number
 
-    call document_from_text(tester, text, this%document)
-    call model_from_text(tester, text, kinematics, this%model)
-    call diagnostics%add_source(this%document%source, number)
-    call new_varied_document(this%document, diagnostics%sources, kinematics, this%varied)
-    call find_quantities(this%model, this%quantities, err)
+    call document_from_text(tester, text, this%given%document)
+    call model_from_text(tester, text, kinematics, this%given%model)
+    call this%given%diagnostics%add_source(this%given%document%source, number)
+    call this%given%prepare_variable()
+    call find_quantities(this%given%model, this%quantities, err)
     call tester%no_error(err, 'quantities of the study')
   end subroutine prepare
 
@@ -89,9 +83,9 @@ contains
     type(error_type), allocatable :: err
 
     call options_of(tester, line, options)
-    call results%open(options, this%document, this%model, this%quantities, err)
+    call results%open(options, this%given, this%quantities, err)
     call tester%no_error(err, 'results of '//line)
-    call runs%begin(this%model, results, ahead, .false., interruption)
+    call runs%begin(this%given%model, results, ahead, .false., interruption)
   end subroutine begin
 
   !> The last parameter changes from run to run; each run has the sum of its lengths.
@@ -103,8 +97,8 @@ contains
     integer :: i
 
     call prepare(tester, grid, this)
-    call tester%is_true(this%model%is_driven() .and. size(used_quantities(this%model)) == 0, 'a driven study')
-    call maker%begin(this%model, this%varied)
+    call tester%is_true(this%given%model%is_driven() .and. size(used_quantities(this%given%model)) == 0, 'a driven study')
+    call maker%begin(this%given%model, this%given%variable)
     do i = 6, 1, -1
       call maker%make(i, made)
       call tester%is_true(made%number == i .and. made%exit_code == exit_done, 'a run that went to its end')
@@ -128,7 +122,7 @@ contains
 
     call prepare(tester, grid, this)
     call begin(tester, this, 'a.nml --study --table '//stem//'.dat', 3, results, runs)
-    call maker%begin(this%model, this%varied)
+    call maker%begin(this%given%model, this%given%variable)
     do i = 1, 6
       call maker%make(i, made(i))
     end do
@@ -164,7 +158,7 @@ contains
     end do
     call remove_file(stem//'.dat')
     open (newunit=unit, file=stem//'.txt')
-    call print_study(unit, this%model, this%quantities, runs, [propagation_type ::], 1.5_wp)
+    call print_study(unit, this%given%model, this%quantities, runs, [propagation_type ::], 1.5_wp)
     call text_of_unit(tester, unit, text)
     call tester%is_true(index(text, '6 runs: 1.5 s'//eol) == 1 .and. index(text, 'x: 1.1 to 2.3 m'//eol) > 0, 'words: '//text)
   end subroutine order
@@ -190,7 +184,7 @@ contains
       type(error_type), allocatable :: err
 
       call begin(tester, this, 'a.nml --study --table '//stem//'.dat', 2*n, results, runs)
-      call make_in_threads(this%model, this%varied, n, interruption, runs)
+      call make_in_threads(this%given%model, this%given%variable, n, interruption, runs)
       call runs%finish(err)
       call tester%no_error(err, 'a study in threads')
       call text_of_file(tester, stem//'.dat', text)
@@ -213,10 +207,10 @@ contains
 
     call prepare(tester, grid, this)
     call begin(tester, this, 'a.nml --study --part 1/2 --hdf5 '//stem//'_1.h5', 2, of_first, first)
-    call make_in_threads(this%model, this%varied, 1, interruption, first)
+    call make_in_threads(this%given%model, this%given%variable, 1, interruption, first)
     call first%finish(err)
     call begin(tester, this, 'a.nml --study --part 2/2 --hdf5 '//stem//'_2.h5', 2, of_second, second)
-    call make_in_threads(this%model, this%varied, 1, interruption, second)
+    call make_in_threads(this%given%model, this%given%variable, 1, interruption, second)
     call second%finish(err)
     call tester%is_true(first%sums%done == 3 .and. second%sums%done == 3, 'three runs each')
     call options_of(tester, '--merge '//stem//'_1.h5 '//stem//'_2.h5 --hdf5 '//stem//'.h5 --quiet', options)
@@ -252,7 +246,7 @@ contains
       "&time end=0.5, intervals=1 /"//eol//"&parameter name='r', value=0.3, spread=0.003, sets='pair(2).point(1)' /"//eol// &
       "&parameter name='l', value=1, spread=0.004, sets='pair(3).point(1)' /"//eol// &
       "&quantity name='x', of='q4', take='start' /"//eol//"&study kind='latin', runs=10 /"//eol, this)
-    call propagate(this%model, this%varied, interruption, found, err)
+    call propagate(this%given%model, this%given%variable, interruption, found, err)
     call tester%no_error(err, 'derivatives of the quantity')
     if (size(found) /= 1) return
     call tester%is_true(found(1)%known .and. found(1)%varies, 'they are known')

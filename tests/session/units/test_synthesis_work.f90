@@ -5,8 +5,6 @@ module test_synthesis_work
   use mech9_kinds, only: wp
   use mech9_best_design, only: text_of_best
   use mech9_design_motion, only: design_motion_type, new_design_motion
-  use mech9_diagnostics, only: diagnostics_type
-  use mech9_document, only: document_type
   use mech9_error, only: error_type, exit_file
   use mech9_explained_assembly, only: assemble_model
   use mech9_fit_panels, only: append_panels
@@ -14,7 +12,7 @@ module test_synthesis_work
   use mech9_hdf5_file, only: hdf5_file_type
   use mech9_hdf5_reading, only: open_existing, read_integer
   use mech9_hdf5_copying, only: extents_of
-  use mech9_model, only: model_type
+  use mech9_data_file, only: data_file_type
   use mech9_optimum_layout, only: write_optima
   use mech9_version, only: name_and_version
   use mech9_optimum_words, only: print_optimum
@@ -26,7 +24,6 @@ module test_synthesis_work
   use mech9_starts_file, only: starts_layout_type, find_layout, read_starts
   use mech9_state, only: state_type
   use mech9_synthesis, only: synthesis_type, new_synthesis
-  use mech9_varied_document, only: varied_document_type, new_varied_document
   use mech9_checks, only: near_vector, has_message
   use mech9_small_models, only: slider_crank, eol
   use mech9_text_models, only: document_from_text, model_from_text
@@ -52,13 +49,10 @@ contains
   end subroutine run
 
   !> Prepare the synthesis. The targets are places of the other slider, l + r cos q in its closed form.
-  subroutine prepare(tester, document, model, varied, synthesis)
+  subroutine prepare(tester, given, synthesis)
     type(tester_type), intent(inout) :: tester                     !< counts the checks
-    type(document_type), intent(out) :: document                   !< the data file
-    type(model_type), intent(out) :: model                         !< the model
-    type(varied_document_type), intent(out), target :: varied      !< it as a function of its parameters
+    type(data_file_type), intent(out), target :: given             !< the data file
     type(synthesis_type), intent(out) :: synthesis                 !< ready for starts
-    type(diagnostics_type) :: diagnostics
     type(plan_type) :: plan
     type(state_type) :: start
     type(error_type), allocatable :: err
@@ -75,36 +69,34 @@ contains
       "&parameter name='r', value=0.3, low=0.1, high=0.5, sets='pair(2).point(1)' /"//eol// &
       "&parameter name='l', value=1, low=0.8, high=1.5, sets='pair(3).point(1)' /"//eol// &
       "&objective kind='function', of='q4', over='q1', file='"//stem//".dat' /"//eol//'&optimum starts=3, seed=5 /'//eol
-    call document_from_text(tester, text, document)
-    call model_from_text(tester, text, kinematics, model)
-    call diagnostics%add_source(document%source, number)
-    call new_varied_document(document, diagnostics%sources, kinematics, varied)
-    call assemble_model(model, plan, start, err)
+    call document_from_text(tester, text, given%document)
+    call model_from_text(tester, text, kinematics, given%model)
+    call given%diagnostics%add_source(given%document%source, number)
+    call given%prepare_variable()
+    call assemble_model(given%model, plan, start, err)
     call tester%no_error(err, 'the start of the data file')
-    call new_synthesis(varied, model, plan, synthesis, err)
+    call new_synthesis(given%variable, given%model, plan, synthesis, err)
     call tester%no_error(err, 'a synthesis')
     call remove_file(stem//'.dat')
   end subroutine prepare
 
   subroutine search(tester)
     type(tester_type), intent(inout) :: tester   !< counts the checks
-    type(document_type) :: document
-    type(model_type) :: model
-    type(varied_document_type), target :: varied
+    type(data_file_type), target :: given
     type(synthesis_type) :: synthesis
     type(starts_type) :: starts
     type(starts_layout_type) :: layout
     type(error_type), allocatable :: err
     integer :: i
 
-    call prepare(tester, document, model, varied, synthesis)
+    call prepare(tester, given, synthesis)
     allocate (starts%made(3))
-    call find_layout(model, synthesis, 'a search', layout)
-    call starts%file%create(stem//'.h5', model, layout, .false., err)
+    call find_layout(given, synthesis, 'a search', layout)
+    call starts%file%create(stem//'.h5', given, layout, .false., err)
     call tester%no_error(err, 'a file for starts')
     call starts%file%publish(err)
     call starts%begin_shown(kinematics, .true.)
-    call make_in_threads(varied, synthesis, 5, 2, starts)
+    call make_in_threads(given%variable, synthesis, 5, 2, starts)
     call tester%is_true(starts%hand_out() == all_handed_out, 'no start is left')
     call starts%finish(synthesis)
     call tester%is_true(.not. allocated(starts%stopped), 'all starts are made')
@@ -114,18 +106,18 @@ contains
     if (size(synthesis%optima) == 0) return
     call near_vector(tester, synthesis%values_of(1), wanted, tol, 'the best one has the lengths of the other slider-crank')
     call tester%near(synthesis%optima(1)%value, 0.0_wp, tol**2, 'it meets all targets')
-    call read_back(tester, model, synthesis, starts)
-    call tell(tester, document, model, synthesis)
-    call draw(tester, model, varied, synthesis)
+    call read_back(tester, given, synthesis, starts)
+    call tell(tester, given, synthesis)
+    call draw(tester, given, synthesis)
     do i = 1, 3
       call tester%is_true(allocated(starts%made(i)%found), 'each start has its designs')
     end do
   end subroutine search
 
   !> The file has the designs of all starts; another search is refused.
-  subroutine read_back(tester, model, synthesis, starts)
+  subroutine read_back(tester, given, synthesis, starts)
     type(tester_type), intent(inout) :: tester         !< counts the checks
-    type(model_type), intent(in) :: model              !< the model
+    type(data_file_type), intent(in) :: given          !< the data file
     type(synthesis_type), intent(in) :: synthesis      !< with its designs
     type(starts_type), intent(in) :: starts            !< all of them, made
     type(start_type) :: again(3), others(3)
@@ -133,7 +125,7 @@ contains
     type(error_type), allocatable :: err
     integer :: i, k
 
-    call find_layout(model, synthesis, 'a search', layout)
+    call find_layout(given, synthesis, 'a search', layout)
     call read_starts(stem//'.h5', layout, again, err)
     call tester%no_error(err, 'starts are read back')
     do i = 1, 3
@@ -151,10 +143,9 @@ contains
   end subroutine read_back
 
   !> A summary, comments and the group of an HDF5 file.
-  subroutine tell(tester, document, model, synthesis)
+  subroutine tell(tester, given, synthesis)
     type(tester_type), intent(inout) :: tester         !< counts the checks
-    type(document_type), intent(in) :: document        !< the data file
-    type(model_type), intent(in) :: model              !< the model
+    type(data_file_type), intent(in) :: given          !< the data file
     type(synthesis_type), intent(in) :: synthesis      !< with its designs
     type(hdf5_file_type) :: file
     type(error_type), allocatable :: err
@@ -163,19 +154,19 @@ contains
     integer :: unit, number
 
     open (newunit=unit, file=stem//'.txt')
-    call print_optimum(unit, model, synthesis, 2.5_wp)
+    call print_optimum(unit, given%model, synthesis, 2.5_wp)
     call text_of_unit(tester, unit, text)
     call tester%is_true(index(text, '3 starts: 2.5 s; ') == 1 .and. index(text, '  r = 0.25'//eol) > 0 .and. &
                         index(text, '  l = 1.2'//eol) > 0, 'a summary: '//text)
-    call text_of_best(document, model, synthesis, text)
-    call tester%is_true(index(text, '! The best design that '//name_and_version(model%program)// &
+    call text_of_best(given%document, given%model, synthesis, text)
+    call tester%is_true(index(text, '! The best design that '//name_and_version(given%model%program)// &
                                     ' found by --optimize from 3 starts, seed 5.'//eol) == 1, 'comments')
     call file%create(stem//'.h5', err)
     call file%put('coordinate', [1, 2, 3, 4], 'number of the coordinate')
     call file%make_scale('coordinate')
     call file%put('target', [1, 2, 3, 4], 'number of the target')
     call file%make_scale('target')
-    call write_optima(file, model, synthesis)
+    call write_optima(file, given%model, synthesis)
     call file%flush()
     call tester%is_true(.not. allocated(file%failure), 'designs are written')
     call file%close()
@@ -188,17 +179,16 @@ contains
   end subroutine tell
 
   !> The panels of the function: places at the targets lie on them, and the differences are round-off.
-  subroutine draw(tester, model, varied, synthesis)
+  subroutine draw(tester, given, synthesis)
     type(tester_type), intent(inout) :: tester                        !< counts the checks
-    type(model_type), intent(in) :: model                             !< with the values of the data file
-    type(varied_document_type), intent(inout), target :: varied       !< the model as a function of its parameters
+    type(data_file_type), intent(inout), target :: given              !< the data file
     type(synthesis_type), intent(in) :: synthesis                     !< with its designs
     type(design_motion_type), target :: motion
     type(fit_panel_type), allocatable :: panels(:)
     type(error_type), allocatable :: err
     character(len=:), allocatable :: script
 
-    call new_design_motion(varied, model, synthesis%values_of(1), synthesis%optima(1)%q, motion, err)
+    call new_design_motion(given%variable, given%model, synthesis%values_of(1), synthesis%optima(1)%q, motion, err)
     call tester%no_error(err, 'the motion of the best design')
     allocate (panels(0))
     call append_panels(motion, synthesis, 1, 'q4', panels, err)

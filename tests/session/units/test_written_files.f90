@@ -2,7 +2,7 @@
 module test_written_files
   use mech9_error, only: error_type, exit_usage
   use mech9_text, only: string_type
-  use mech9_request, only: output_settings_type
+  use mech9_data_file, only: data_file_type
   use mech9_command_line, only: command_line_type
   use mech9_overwriting, only: refuse_overwriting
   use mech9_written_files, only: result_paths_type, written_file_type, find_result_paths, list_written_files
@@ -27,40 +27,46 @@ contains
     if (tester%runs('overwriting')) call overwriting(tester)
   end subroutine run
 
-  !> Settings of the data file.
-  function settings(table, hdf5) result(output)
-    character(len=*), intent(in) :: table   !< its file; empty: none
-    character(len=*), intent(in) :: hdf5    !< its file; empty: none
-    type(output_settings_type) :: output
+  !> A data file that names results.
+  subroutine give(table, hdf5, given)
+    character(len=*), intent(in) :: table          !< its file; empty: none
+    character(len=*), intent(in) :: hdf5           !< its file; empty: none
+    type(data_file_type), intent(out) :: given     !< the data file
 
-    output%table = table
-    output%hdf5 = hdf5
-    output%sketch = ''
-    output%animation = ''
-  end function settings
+    associate (output => given%model%request%output)
+      output%table = table
+      output%hdf5 = hdf5
+      output%sketch = ''
+      output%animation = ''
+    end associate
+    given%model%request%section%table = ''
+  end subroutine give
 
   !> The command line comes before the data file; without results the table goes to standard output.
   subroutine paths(tester)
     type(tester_type), intent(inout) :: tester   !< counts the checks
 
-    call are('a.nml', settings('', ''), '-', '')
-    call are('a.nml', settings('t.dat', 'h.h5'), 't.dat', 'h.h5')
-    call are('a.nml --table u.dat', settings('t.dat', 'h.h5'), 'u.dat', 'h.h5')
-    call are('a.nml --hdf5 k.h5', settings('', ''), '', 'k.h5')
-    call are('a.nml --sketch s.svg', settings('', ''), '', '')
-    call are('a.nml --no-write', settings('t.dat', 'h.h5'), '', '')
-    call are('a.nml --study --continue c.h5', settings('', 'h.h5'), '', 'c.h5')
+    call are('a.nml', '', '', '-', '')
+    call are('a.nml', 't.dat', 'h.h5', 't.dat', 'h.h5')
+    call are('a.nml --table u.dat', 't.dat', 'h.h5', 'u.dat', 'h.h5')
+    call are('a.nml --hdf5 k.h5', '', '', '', 'k.h5')
+    call are('a.nml --sketch s.svg', '', '', '', '')
+    call are('a.nml --no-write', 't.dat', 'h.h5', '', '')
+    call are('a.nml --study --continue c.h5', '', 'h.h5', '', 'c.h5')
   contains
-    subroutine are(line, output, table, hdf5)
+    subroutine are(line, table_given, hdf5_given, table, hdf5)
       character(len=*), intent(in) :: line                  !< command line
-      type(output_settings_type), intent(in) :: output      !< settings of the data file
+      character(len=*), intent(in) :: table_given           !< the path of the table in the data file
+      character(len=*), intent(in) :: hdf5_given            !< the path of the HDF5 file there
       character(len=*), intent(in) :: table                 !< the right path of the table
       character(len=*), intent(in) :: hdf5                  !< the right path of the HDF5 file
       type(command_line_type) :: options
       type(result_paths_type) :: found
+      type(data_file_type) :: given
 
       call options_of(tester, line, options)
-      call find_result_paths(options, output, found)
+      call give(table_given, hdf5_given, given)
+      call find_result_paths(options, found, given)
       call tester%is_true(found%table == table .and. found%hdf5 == hdf5, 'paths of the results of '//line)
     end subroutine are
   end subroutine paths
@@ -83,10 +89,12 @@ contains
       type(command_line_type) :: options
       type(written_file_type), allocatable :: files(:)
       character(len=:), allocatable :: names
+      type(data_file_type) :: given
       integer :: i
 
       call options_of(tester, line, options)
-      call list_written_files(options, files, settings('', ''))
+      call give('', '', given)
+      call list_written_files(options, files, given)
       names = ''
       do i = 1, size(files)
         if (i > 1) names = names//' '
@@ -115,11 +123,13 @@ contains
       character(len=*), intent(in) :: words   !< part of the message; empty: it is not refused
       type(command_line_type) :: options
       type(string_type) :: inputs(1)
+      type(data_file_type) :: given
       type(error_type), allocatable :: err
 
       call options_of(tester, line, options)
       inputs(1)%text = path
-      call refuse_overwriting(options, inputs, err, settings('', ''))
+      call give('', '', given)
+      call refuse_overwriting(options, inputs, err, given)
       if (words == '') then
         call tester%no_error(err, 'files that differ: '//line)
       else

@@ -5,9 +5,9 @@ module mech9_study_definition
   use mech9_text, only: string_type, to_text
   use mech9_error, only: error_type
   use mech9_file_bytes, only: read_bytes
-  use mech9_document, only: document_type, group_type, value_type, value_integer, value_real, value_logical, &
+  use mech9_data_file, only: data_file_type
+  use mech9_document, only: group_type, value_type, value_integer, value_real, value_logical, &
                             value_text, value_word
-  use mech9_drive_reader, only: files_of_groups
   implicit none
   private
   public :: define_study, tell_difference, digest_of
@@ -26,21 +26,20 @@ contains
   !> Form the definition. It has a line for the program, for each group of the data file with the changes by --set, and
   !> for each file that groups name. The line of a file is its digest. Blanks, comments, the files of the results and
   !> the number of starts do not matter. Fail with exit_file where a file cannot be read.
-  subroutine define_study(program, document, text, err)
-    integer, intent(in) :: program                           !< kinematics or dynamics
-    type(document_type), intent(in) :: document              !< the data file as groups and items, with the changes by --set
+  subroutine define_study(given, text, err)
+    class(data_file_type), intent(in) :: given               !< the data file, with the changes by --set
     character(len=:), allocatable, intent(out) :: text       !< the definition
     type(error_type), allocatable, intent(out) :: err        !< allocated if it failed
     type(string_type), allocatable :: files(:)
     character(len=:), allocatable :: bytes, line
     integer :: i
 
-    text = 'program '//program_names(program)//line_end
-    do i = 1, size(document%groups)
-      call write_group(document%groups(i), line)
+    text = 'program '//program_names(given%model%program)//line_end
+    do i = 1, size(given%document%groups)
+      call write_group(given%document%groups(i), line)
       text = text//line
     end do
-    call files_of_groups(document, files)
+    call given%list_files(files)
     do i = 1, size(files)
       call read_bytes(files(i)%text, bytes, err)
       if (allocated(err)) return

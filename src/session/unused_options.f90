@@ -2,7 +2,7 @@
 module mech9_unused_options
   use mech9_program_kind, only: program_names
   use mech9_command_line, only: command_line_type
-  use mech9_model, only: model_type
+  use mech9_data_file, only: data_file_type
   implicit none
   private
   public :: print_unused_options
@@ -15,10 +15,10 @@ module mech9_unused_options
 contains
 
   !> Write a line for each reason why options are without effect.
-  subroutine print_unused_options(unit, options, model)
+  subroutine print_unused_options(unit, options, given)
     integer, intent(in) :: unit                     !< Fortran unit to write to
     type(command_line_type), intent(in) :: options  !< the command line
-    type(model_type), intent(in) :: model       !< the model, whose data file may request pictures, too
+    class(data_file_type), intent(in) :: given      !< the data file, which may request pictures, too
     character(len=:), allocatable :: name, answer, names
     logical :: drawn
 
@@ -26,7 +26,7 @@ contains
     answer = options%answer()
     ! options without effect are refused there
     if (options%rest() /= '' .or. options%has('exponents') .or. options%has('branch') .or. options%has('at')) then
-      if (options%has('sketch') .or. options%has('animate')) call print_idle_arrows(unit, options, model)
+      if (options%has('sketch') .or. options%has('animate')) call print_idle_arrows(unit, options, given)
       return
     end if
     if (answer /= '') then
@@ -41,22 +41,22 @@ contains
     if (options%has('starts') .and. (answer == 'structure' .or. .not. options%has('branches'))) &
       write (unit, '(a)') name//': without effect: --starts; it is the number of guesses of --branches'
     drawn = options%has('sketch')
-    if (answer == '') drawn = drawn .or. options%has('animate') .or. pictures_of(model)
+    if (answer == '') drawn = drawn .or. options%has('animate') .or. pictures_of(given)
     if (options%has('sketch') .and. answer /= '' .and. answer /= 'structure') then
-      call print_idle_arrows(unit, options, model)
+      call print_idle_arrows(unit, options, given)
     end if
     if (options%has('view') .and. (answer == 'structure' .or. .not. drawn)) &
       write (unit, '(a)') name//': without effect: --view; no picture of the mechanism is drawn'
   end subroutine print_unused_options
 
   !> Write a line if arrows are requested, but the answer that is drawn has none: it makes no run, or shows a mode.
-  subroutine print_idle_arrows(unit, options, model)
+  subroutine print_idle_arrows(unit, options, given)
     integer, intent(in) :: unit                     !< Fortran unit to write to
     type(command_line_type), intent(in) :: options  !< the command line, with an answer in place of a run
-    type(model_type), intent(in) :: model           !< the model
+    class(data_file_type), intent(in) :: given      !< the data file, which may request pictures, too
     character(len=:), allocatable :: names, answer
 
-    call list_arrows(model, names)
+    call list_arrows(given, names)
     if (names == '') return
     answer = options%answer()
     if (options%rest() /= '') answer = options%rest()
@@ -69,12 +69,12 @@ contains
   end subroutine print_idle_arrows
 
   !> List the requested arrows of pictures: "force_arrows, velocity_arrows".
-  pure subroutine list_arrows(model, list)
-    type(model_type), intent(in) :: model               !< the model
+  pure subroutine list_arrows(given, list)
+    class(data_file_type), intent(in) :: given          !< the data file, which may request pictures, too
     character(len=:), allocatable, intent(out) :: list  !< their names in the data file, with commas
 
     list = ''
-    associate (output => model%request%output)
+    associate (output => given%model%request%output)
       if (output%force_arrows) list = list//', force_arrows'
       if (output%velocity_arrows) list = list//', velocity_arrows'
       if (output%acceleration_arrows) list = list//', acceleration_arrows'
@@ -83,12 +83,12 @@ contains
   end subroutine list_arrows
 
   !> Whether the data file requests pictures of the mechanism.
-  pure logical function pictures_of(model)
-    type(model_type), intent(in) :: model      !< the model
+  pure logical function pictures_of(given)
+    class(data_file_type), intent(in) :: given   !< the data file, which may request pictures, too
 
     pictures_of = .false.
-    if (allocated(model%request%output%sketch)) pictures_of = model%request%output%sketch /= ''
-    if (allocated(model%request%output%animation)) pictures_of = pictures_of .or. model%request%output%animation /= ''
+    if (allocated(given%model%request%output%sketch)) pictures_of = given%model%request%output%sketch /= ''
+    if (allocated(given%model%request%output%animation)) pictures_of = pictures_of .or. given%model%request%output%animation /= ''
   end function pictures_of
 
   !> List the given ones of some options: "--table, --hdf5".
