@@ -80,10 +80,24 @@ else()
   endforeach()
 endif()
 
-# expat reads XML, for the import of robots; without it a program says so.
+# expat reads XML, for the import of robots; without it a program says so. Its archive where that can go into a shared library, too,
+# which in Debian 13 it cannot.
 if(MECH9_IMPORT)
-  find_library(MECH9_EXPAT NAMES libexpat.a expat DOC "expat (Debian: libexpat1-dev)")
-  mark_as_advanced(MECH9_EXPAT)
+  find_library(MECH9_EXPAT_ARCHIVE libexpat.a DOC "the archive of expat (Debian: libexpat1-dev)")
+  if(MECH9_EXPAT_ARCHIVE AND NOT DEFINED MECH9_EXPAT)
+    file(WRITE "${PROJECT_BINARY_DIR}/CMakeFiles/expat_archive.f90"
+      "subroutine reads_xml() bind(c)\n use, intrinsic :: iso_c_binding\n interface\n  function parser_of(encoding) bind(c, name='XML_ParserCreate')\n"
+      "   import c_ptr\n   type(c_ptr), value :: encoding\n   type(c_ptr) :: parser_of\n  end function parser_of\n end interface\n"
+      " if (c_associated(parser_of(c_null_ptr))) error stop\nend subroutine reads_xml\n")
+    try_compile(expat_goes_into_libraries "${PROJECT_BINARY_DIR}/CMakeFiles/expat_archive" "${PROJECT_BINARY_DIR}/CMakeFiles/expat_archive.f90"
+      CMAKE_FLAGS "-DCMAKE_POSITION_INDEPENDENT_CODE=ON" "-DCMAKE_Fortran_FLAGS=-fPIC"
+      LINK_OPTIONS -shared LINK_LIBRARIES "${MECH9_EXPAT_ARCHIVE}")
+    if(expat_goes_into_libraries)
+      set(MECH9_EXPAT "${MECH9_EXPAT_ARCHIVE}" CACHE FILEPATH "expat (Debian: libexpat1-dev)")
+    endif()
+  endif()
+  find_library(MECH9_EXPAT expat DOC "expat (Debian: libexpat1-dev)")
+  mark_as_advanced(MECH9_EXPAT MECH9_EXPAT_ARCHIVE)
   if(MECH9_EXPAT)
     set(MECH9_XML_LIBRARY "${MECH9_EXPAT}")
   else()
