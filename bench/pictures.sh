@@ -1,6 +1,6 @@
 # The pictures of bench/run, by gnuplot. Uses its $work, $output, $problems and words.
 
-colours=('#0072b2' '#d55e00' '#009e73' '#cc79a7' '#e69f00' '#56b4e9' '#000000' '#7f3f00' '#808080')
+colours=('#0072b2' '#d55e00' '#009e73' '#cc79a7' '#e69f00' '#56b4e9' '#000000' '#7f3f00' '#808080' '#8b0000' '#006400' '#4b0082' '#b8860b' '#2f4f4f')
 
 # The beginning that all of them have in common: picture, height.
 begin_picture() {

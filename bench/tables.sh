@@ -24,6 +24,40 @@ EOT
     }
     NR > 1 { printf "| %s | %s | %.3f | %.1f | %.3f | %.1f |\n", name[$1], size[$1], $2, $4, $3, $5 }
   ' "$work/positions.dat"
+  # the other program has no point
+  awk -F '\t' '
+    NR == FNR { if ($1 ~ /^closed_form/) { split($0, cell, " "); place = cell[2]; all = cell[3] } next }
+    NF == 4 { printf "| four-bar, %s | 4, 4 | %.3f | %.1f | %.3f | %.1f |\n", $1, $2, $2 / place, $3, $3 / all }
+  ' "$work/positions.dat" "$work/positions.others"
+}
+
+# whole runs of mech9k: their processor time, and the time of one of their positions, parameters or starts
+answers_table() {
+  cat <<'EOT'
+| whole run | processor time [s] | of one |
+| --- | --- | --- |
+EOT
+  awk '
+    NR == FNR { if ($1 == "four_bar") position = $3; next }
+    $1 == "study" {
+      each = 1e6 * $3 / $2 / 361
+      printf "| study of %d four-bars, 361 positions of each, the range of a coordinate | %.2f | %.3f µs a position, %.2f of the table above |\n", $2, $3,
+        each, each / position
+    }
+    $1 == "sensitivity0" { plain = $3; printf "| four-bar, %d positions to an HDF5 file | %.3f | %.2f µs a position |\n", $2, $3, 1e6 * $3 / $2 }
+    $1 == "sensitivity10" {
+      printf "| the same with derivatives of all columns by ten parameters | %.3f | %.2f µs a position, %.1f times as long |\n", $3, 1e6 * $3 / $2, $3 / plain
+    }
+    $1 == "timed_path" { printf "| search for eighteen timed points, %d starts | %.2f | %.1f ms a start |\n", $2, $3, 1e3 * $3 / $2 }
+    $1 == "five_timed_points" { printf "| search for five timed points, %d starts | %.2f | %.1f ms a start |\n", $2, $3, 1e3 * $3 / $2 }
+  ' "$work/positions.dat" "$work/answers.dat"
+}
+
+# versions and settings of other programs, once each, and where they have no rows
+settings_list() {
+  cat "$work"/*.others | awk '$1 == "setting" && !seen[$2]++ { sub(/^setting /, ""); print "-", $0 }'
+  sed -n 's/^missing \([^ ]*\).*/\1/p' "$work"/*.others "$work/others.dat" | sort -u | paste -sd ',' |
+    sed 's/,/, /g; /./s/^/- not installed on this machine, and not measured: /'
 }
 
 # times of an objective and their ratios to a position
@@ -164,13 +198,6 @@ EOT
   ' "$work/others.dat"
 }
 
-# a sentence about the other programs that were not found
-missing_programs() {
-  local names
-  names=$(sed -n 's/^missing //p' "$work/others.dat" | paste -sd ',' | sed 's/,/, /g')
-  [ -z "$names" ] || echo "Not installed on this machine, and not measured: $names."
-}
-
 write_tables() {
   local problem
   cat <<EOT
@@ -179,7 +206,7 @@ write_tables() {
 Measured by \`bench/run\`, which builds the programs with every instruction of the machine, runs them and writes this page.$([ $mode = full ] || printf '\n%s' "This was a quick run, over a twentieth of the times told below: its figures mean little.")
 
 - machine: $(machine)
-- build: $(build_words)
+- build: $(build_words)$([ -z "$built" ] || printf '\n%s' "- built from nothing in $built s, programs of this page included")
 
 Times are medians on one core. Other machines have other times; the ratios carry over.
 
@@ -195,6 +222,15 @@ $(position_table)
 Largest difference of the four-bar's accelerations from the closed form, relative to the largest acceleration:
 $(awk '$1 == "four_bar" { print $6 }' "$work/positions.dat").
 
+The last rows, if there are such, are other programs: pylinkage's compiled solver, without a point on the coupler. Largest error of the
+rocker's pin over the crank: $(awk -F '\t' 'NF == 4 { print $4; n++ } END { if (n == 0) print "not measured" }' "$work/positions.others").
+
+## Studies, searches, sensitivities
+
+Whole runs of \`mech9k\` in one thread, with all of reading, planning and writing.
+
+$(answers_table)
+
 ## Values of an objective
 
 The objective of \`examples/timed_path\`: eighteen points at given times, nine parameters. Each design differs by up to a thousandth of
@@ -207,6 +243,12 @@ $(synthesis_table)
 Wall time of an integration and evaluations of the motion against the error at its end, over the tolerances 1e-3 to 1e-13. Errors
 are differences to references in extended precision in \`tests/reference\`; for the spatial slider-crank, to a run at
 1e-13 by another method. The tables show the shortest time in which a method came below an error, and its evaluations.
+
+Other programs stand behind our methods, over their steps or tolerances (\`bench/peers\`). They have the same links, pairs, bodies and loads, the same
+closed position and rates at the start, and the time of their integration alone counts. Numbers behind their times are steps for Exudyn,
+MuJoCo and Drake, evaluations for Pinocchio and Simbody. Angles count without whole turns. Their versions and settings:
+
+$(settings_list)
 EOT
   for problem in $problems; do
     echo
@@ -218,15 +260,16 @@ EOT
     if [ $problem = andrews ]; then
       cat <<EOT
 
-The last row is the mechanism in one coordinate, derived by hand for this one mechanism (\`bench/closed_andrews.f90\`), with the integrator of
+The row \`by hand\` is the mechanism in one coordinate, derived by hand for this one mechanism (\`bench/closed_andrews.f90\`), with the integrator of
 \`prince-dormand\`. To an error of 1e-8 the program takes $(hand_ratio) times as long with this integrator.
 EOT
     fi
-    if [ -s "$work/$problem.failed" ]; then
+    if [ -s "$work/$problem.failed" ] || grep -q '^failed' "$work/$problem.others"; then
       echo
       echo "Runs that did not come to the end:"
       echo
       sed 's/^/- /' "$work/$problem.failed"
+      sed -n 's/^failed /- /p' "$work/$problem.others"
     fi
   done
   cat <<EOT
@@ -259,7 +302,7 @@ $(memory_table)
 
 ## Other programs
 
-Accelerations at the closed position in which each data file starts, by procedures of one thread (\`bench/other_programs.py\`): by hand for this one
+Accelerations at the closed position in which each data file starts, by procedures of one thread (\`bench/peers/accelerations.py\`): by hand for this one
 mechanism (\`bench/closed_structures.f90\`, \`bench/closed_andrews.f90\`; position and accelerations), by MECH9, by MuJoCo with contacts
 off, and by Pinocchio. The last two are called from Python, which takes one or two microseconds of a call, and have the same links,
 positions and rates. MuJoCo holds closed chains by soft constraints as hard as it allows, and starts from the accelerations of the call before;
@@ -267,8 +310,6 @@ Pinocchio's \`lcaba\` makes one proximal step. Both are measured as their packag
 accelerations are from those of MECH9, over the largest one.
 
 $(others_table)
-
-$(missing_programs)
 EOT
 }
 
