@@ -32,7 +32,7 @@ PROBLEMS = {
 }
 PROGRAMS = ('exudyn_motion', 'mujoco_motion', 'drake_motion', 'pinocchio_motion', 'simbody_motion')
 # the list of a program ends when its runs have taken this time together, since finer settings would take longer still [s]
-PATIENCE = 20.0
+PATIENCE = 10.0
 # all runs of a program together are ended after this time, a fifth of it in quick runs [s]
 LONGEST = 90.0
 LONG_ENOUGH = 0.05
