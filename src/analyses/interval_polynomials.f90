@@ -29,10 +29,8 @@ contains
     type(chebyshev_type), intent(in) :: rule    !< its points
     integer, intent(in) :: order                !< 0 to 2: order of the derivative
     real(wp), intent(out) :: values(:)          !< (rule%n) at the points
-    real(wp) :: changes(1, rule%n)
 
-    call changes_between(hermite, from, to, rule, order, changes)
-    values = changes(1, :)
+    call hermite%first_at(from + 0.5_wp*(to - from)*(1.0_wp + rule%points), order, values)
   end subroutine values_between
 
   !> Values of several polynomials, or of derivatives of them in time, at the points of an interval.

@@ -11,6 +11,7 @@ module mech9_hermite
     real(wp), allocatable :: d(:, :)   !< (quantities, 3 points): divided differences
   contains
     procedure :: evaluate
+    procedure :: first_at
   end type hermite_type
 
 contains
@@ -64,6 +65,33 @@ contains
       y = y*(x - self%x(i)) + self%d(:, i)
     end do
   end subroutine evaluate
+
+  !> Values of the first polynomial, or of a derivative of it, at several abscissas: by the operations of `evaluate`.
+  pure subroutine first_at(self, x, order, values)
+    class(hermite_type), intent(in) :: self   !< the polynomials
+    real(wp), intent(in) :: x(:)              !< the abscissas
+    integer, intent(in) :: order              !< 0 to 2: order of the derivative
+    real(wp), intent(out) :: values(:)        !< at these abscissas
+    real(wp), dimension(size(x)) :: y, dy, ddy
+    integer :: i
+
+    y = 0.0_wp
+    dy = 0.0_wp
+    ddy = 0.0_wp
+    do i = size(self%x), 1, -1
+      if (order > 1) ddy = ddy*(x - self%x(i)) + 2.0_wp*dy
+      if (order > 0) dy = dy*(x - self%x(i)) + y
+      y = y*(x - self%x(i)) + self%d(1, i)
+    end do
+    select case (order)
+    case (0)
+      values = y
+    case (1)
+      values = dy
+    case default
+      values = ddy
+    end select
+  end subroutine first_at
 
   !> The cubic polynomial with given values and derivatives at 0 and 1.
   pure real(wp) function cubic_between(start, slope, end, end_slope, x)

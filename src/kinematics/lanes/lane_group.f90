@@ -12,7 +12,7 @@ module mech9_lane_group
   public :: lane_group_type, lane_block_type, new_lane_group, fits_lanes, fill_lane, renew_lane, copy_lane
 
   !> Designs that stand side by side.
-  integer, parameter, public :: lanes = 8
+  integer, parameter, public :: lanes = 16
 
   !> A step and its coordinate.
   type :: lane_step_type
