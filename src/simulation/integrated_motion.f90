@@ -376,7 +376,7 @@ contains
     class(impact_watcher_type), allocatable, intent(inout) :: impacts   !< gets the impulses of pairs; not allocated: they are not recorded
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     real(wp), dimension(self%system%plan%n_coordinates) :: impulses, changes
-    type(stop_contacts_type) :: contacts_before
+    type(stop_contacts_type) :: prior
     type(impact_type) :: impact
     integer :: before
     logical :: holds_change, stalls, hits, released
@@ -390,11 +390,11 @@ contains
     if (allocated(self%passage) .and. rubbing > 0 .and. .not. allocated(err)) call meet_rubbing(self%passage, self%system, &
       self%contacts%ends(findloc(self%contacts%ends%contact, rubbing, dim=1)), err)
     if (allocated(err)) return
-    contacts_before = self%contacts
+    prior = self%contacts
     call meet_contacts(self%system, met, rubbing, of_held, self%contacts, impulses, changes, impact, holds_change, events, err)
     if (allocated(err)) return
     holds_change = holds_change .or. released
-    if (allocated(self%passage)) call self%passage%pass_contacts(self%system, contacts_before%ends, impact, at_start, err)
+    if (allocated(self%passage)) call self%passage%pass_contacts(self%system, prior%ends, self%contacts%ends, impact, at_start, err)
     if (allocated(err)) return
     hits = any(abs(impulses) > 0.0_wp)
     if (allocated(self%system%contact)) hits = hits .or. any(abs(self%system%state%contact_force) > 0.0_wp)

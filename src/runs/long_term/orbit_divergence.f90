@@ -199,13 +199,15 @@ contains
     self%plans = simulation%plans()
   end subroutine pass
 
-  !> Whether a rigid contact of links is closed.
+  !> Whether a rigid contact of links is closed, or a stop or friction holds a coordinate.
   pure logical function is_closed(simulation)
     type(free_simulation_type), intent(in) :: simulation       !< the motion
 
     is_closed = .false.
     associate (system => simulation%motion%system)
-      if (allocated(system%contact)) is_closed = any(system%contact%acts .and. system%model%mechanism%contacts%is_rigid)
+      if (allocated(system%held)) is_closed = size(system%held) > 0
+      if (allocated(system%contact) .and. .not. is_closed) &
+        is_closed = any(system%contact%acts .and. system%model%mechanism%contacts%is_rigid)
     end associate
   end function is_closed
 

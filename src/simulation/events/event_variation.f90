@@ -29,6 +29,7 @@ module mech9_event_variation
   use mech9_release_rate, only: find_use_rate
   use mech9_event_refusals, only: refuse, refuse_at, follows_jumps, hits_others
   use mech9_contact_equations, only: contact_equations_type, find_contact_equations
+  use mech9_held_directions, only: hold_directions
   use mech9_varied_impact, only: impact_type, add_varied_impact, meet_targets
   implicit none
   private
@@ -169,6 +170,7 @@ contains
     type(link_motion_type) :: ball, surface
     integer :: i
 
+    if (allocated(self%gaps)) deallocate (self%gaps, self%slips, self%rests, self%gap_motion)
     associate (n => size(system%model%mechanism%contacts), mechanism => system%model%mechanism)
       allocate (self%gaps(size(self%time), 0:2, n), self%slips(size(self%time), 3, n), self%rests(n), self%gap_motion(0:2, n))
       self%acted = system%contact%acts
@@ -293,15 +295,22 @@ contains
   end subroutine break_loose
 
   !> Pass an impact, if there is one, and what contacts do from now on. Fails where derivatives do not exist.
-  subroutine pass_contacts(self, system, contacts, impact, at_start, err)
+  subroutine pass_contacts(self, system, contacts, after, impact, at_start, err)
     class(event_variation_type), intent(inout) :: self     !< the derivatives, at a fixed time; then carried along, behind an impact
     class(motion_system_type), intent(inout) :: system     !< the system, with all rates behind the event; stays as it is
     type(stop_contact_type), intent(in) :: contacts(:)     !< all ends, as before the event
+    type(stop_contact_type), intent(in) :: after(:)        !< all ends, as they are from now on
     type(impact_type), intent(in) :: impact                !< the impact; not allocated parts: there is none
     logical, intent(in) :: at_start                        !< the motion begins with it
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
 
-    if (allocated(impact%ends)) call pass_impact(self, system, contacts, impact, at_start, err)
+    if (allocated(impact%ends)) then
+      call pass_impact(self, system, contacts, impact, at_start, err)
+    else if (at_start) then
+      call hold_directions(system, after, err)
+      if (.not. allocated(err)) self%q = system%sensitivity%motion%q(:, 0:1, :)
+      if (allocated(system%contact) .and. .not. allocated(err)) call keep_gaps(self, system)
+    end if
     if (.not. allocated(err)) call check_rest(self, system, contacts, impact, at_start, err)
   end subroutine pass_contacts
 
