@@ -161,14 +161,19 @@ contains
     type(curve_point_type) :: trial
     real(wp) :: low, high, place, value, values(2), sense
     integer :: i, now
+    logical :: undamped
 
     low = 0.0_wp
     high = stride%length
     distance = high
     values = 0.0_wp
     sense = sign(1.0_wp, real(pairs(2) - pairs(1), wp))
+    call try(merge(low, high, pairs(1) < pairs(2)))
+    if (.not. found) return
+    ! without damping round-off alone decides on which side of the axis a pair lies
+    undamped = abs(value) <= neutral_root
     do i = 1, most_trials
-      if (values(1) < 0.0_wp .and. values(2) > 0.0_wp .and. maxval(abs(values)) < crossed) exit
+      if (.not. undamped .and. values(1) < 0.0_wp .and. values(2) > 0.0_wp .and. maxval(abs(values)) < crossed) exit
       if (high - low <= round_off_step) exit
       call try(0.5_wp*(low + high))
       if (.not. found) return
@@ -183,7 +188,7 @@ contains
       end if
     end do
     found = allocated(point%z) .and. distance < stride%length
-    if (values(1) < 0.0_wp .and. values(2) > 0.0_wp) then
+    if (.not. undamped .and. values(1) < 0.0_wp .and. values(2) > 0.0_wp) then
       search = new_false_position(low, values(1), high, values(2))
       do i = 1, most_trials
         call search%next(distance, found)
