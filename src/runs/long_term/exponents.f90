@@ -21,6 +21,7 @@ module mech9_exponents
   use mech9_simulation, only: interruption_type
   use mech9_sensitivity, only: sensitivity_type
   use mech9_motion_sensitivity, only: motion_sensitivity_type
+  use mech9_held_directions, only: hold_directions
   use mech9_free_simulation, only: free_simulation_type
   use mech9_model_motion, only: model_motion_type
   use mech9_orbit_divergence, only: orbit_divergence_type
@@ -327,6 +328,8 @@ contains
     logs = 0.0_wp
     call simulation%stand_at_step(err)
     if (.not. allocated(err)) call simulation%motion%system%show_sensitivity(err)
+    if (allocated(simulation%motion%system%contact) .and. .not. allocated(err)) &
+      call hold_directions(simulation%motion%system, simulation%motion%contacts%ends, err)
     if (allocated(err)) return
     call take_directions(simulation, directions)
     do p = 1, size(logs)

@@ -1,10 +1,12 @@
-!> Directions beside a motion that begins on closed contacts.
+!> Directions beside a motion on closed contacts.
 !>
 !> A neighbouring start beside a contact falls onto it, and one that slides where friction holds it is stopped: both motions become the same.
-!> A direction loses what leads there. It is moved onto the contacts by the least change, weighed by mass: along M^-1 J^T.
+!> A direction loses what leads there. It is moved onto the contacts by the least change, weighed by mass: along M^-1 J^T. Later on this
+!> takes off what errors of integration leave, which would outlive directions that decay.
 module mech9_held_directions
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
+  use mech9_state, only: state_type, copy_state
   use mech9_friction_cones, only: solve_least
   use mech9_motion_system, only: motion_system_type
   use mech9_varied_contacts, only: contact_variation_type, vary_contact
@@ -23,22 +25,22 @@ module mech9_held_directions
 
 contains
 
-  !> Take from all directions what closed ends of stops and contacts hold from the start on. Parameters that set numbers stay as they are.
+  !> Take from all directions what closed ends of stops and contacts hold. Derivatives by parameters that set numbers stay as they are.
   subroutine hold_directions(system, ends, err)
-    class(motion_system_type), intent(inout) :: system     !< the system at the start, with the modes of contacts; its directions change
-    type(stop_contact_type), intent(in) :: ends(:)         !< all ends, closed or open as they are from the start on
+    class(motion_system_type), intent(inout) :: system     !< the system, with the modes of contacts; its directions change
+    type(stop_contact_type), intent(in) :: ends(:)         !< all ends, closed or open as they are from now on
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     type(contact_equations_type) :: equations
     type(conditions_type) :: conditions
     integer, allocatable :: closed(:)
-    real(wp), allocatable :: forces(:, :)
+    type(state_type) :: kept
     integer :: i, order
 
     closed = pack([(i, i=1, size(ends))], [(acts(ends(i)), i=1, size(ends))])
     if (size(closed) == 0) return
-    if (allocated(system%state%contact_force)) forces = system%state%contact_force
+    call copy_state(system%state, kept)
     call find_contact_equations(system, [(.false., i=1, system%plan%n_coordinates)], ends(closed), equations, err)
-    if (allocated(forces)) system%state%contact_force = forces
+    call copy_state(kept, system%state)
     if (allocated(err)) return
     associate (plan => system%plan)
       conditions%place = [(findloc(equations%free, plan%free_places(i), dim=1), i=1, size(plan%free))]
