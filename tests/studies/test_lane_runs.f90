@@ -216,6 +216,11 @@ contains
                  '&parameter name=''crank'', sets=''pair(2).point(1)'', value=0.3, low=0.2, high=0.5'//uniform// &
                  '&parameter name=''speed_of_crank'', sets=''drive.coefficients(2)'', value=10, low=8, high=12'//uniform// &
                  drawn(13), 'slider-cranks', 13)
+    ! the unit of a slide is the size of the mechanism
+    call compare_starts(tester, slider//'&drive coordinate=1, kind=''polynomial'', coefficients=0.1,10 /'//nl// &
+                        one_turn//quantities// &
+                        '&parameter name=''rod'', sets=''pair(3).point(1)'', value=1.1, low=1.1, high=1.4'//uniform//drawn(13), &
+                        'slider-cranks', 5)
     ! a slide on an arm that turns has Coriolis accelerations
     call compare(tester, swinging//turning//'&time start=0, end=0.6283185307179586, intervals=360 /'//nl//quantities// &
                  '&parameter name=''crank'', sets=''pair(2).point(1)'', value=0.15, low=0.1, high=0.2'//uniform//drawn(9), &
