@@ -11,6 +11,10 @@ module mech9_data_file
   use mech9_reader, only: read_model
   use mech9_varied_document, only: varied_document_type, new_varied_document
   use mech9_force_record, only: reacting_pairs
+  use mech9_columns, only: columns_type
+  use mech9_quantity_record, only: quantity_record_type
+  use mech9_design_run, only: columns_of_runs
+  use mech9_study_check, only: check_study
   use mech9_run, only: run_type
   use mech9_periodic, only: periodic_found_type, find_periodic
   use mech9_periodic_run, only: take_periodic, start_periodic
@@ -33,12 +37,15 @@ module mech9_data_file
     type(varied_document_type) :: variable   !< the model as a function of its parameters, once it is prepared
     class(run_type), allocatable :: run      !< its run, which refers to the model; not allocated before it begins
     type(periodic_found_type), allocatable :: periodic   !< periodic motions, of which the run records the first one
+    type(quantity_record_type) :: quantities   !< those of the runs of a study, with their columns, once it is judged
+    type(columns_type) :: run_columns          !< of the runs of a study, once these are found
   contains
     procedure :: open => open_file
     procedure :: read => read_whole
     procedure :: prepare_variable
     procedure :: check_times
     procedure :: close_run
+    procedure :: judge_study
     procedure :: find_periodic => find_periodic_motions
     procedure :: fail
     procedure :: failed
@@ -111,6 +118,15 @@ contains
     call self%run%motion%assemble(self%model, err)
     if (.not. allocated(err)) call start_periodic(self%periodic%motions(1), self%model, self%run%motion, err)
   end subroutine find_periodic_motions
+
+  !> Judge whether a study can be carried out, and find the columns of its quantities. Fails as check_study does.
+  subroutine judge_study(self, err)
+    class(data_file_type), intent(inout) :: self         !< the file, read without errors
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it cannot
+
+    call check_study(self%model, self%quantities, err)
+    if (.not. allocated(err) .and. self%model%request%output%hdf5_runs) call columns_of_runs(self%model, self%run_columns)
+  end subroutine judge_study
 
   !> End the run, if there is one.
   subroutine close_run(self)

@@ -21,7 +21,7 @@ module mech9_run_task
   use mech9_start_way_text, only: print_start_way
   use mech9_picture_requests, only: picture_requests_type
   use mech9_results, only: results_type
-  use mech9_quantity_results, only: print_quantities
+  use mech9_quantity_words, only: print_quantities
   use mech9_section_results, only: check_section_plots, write_section_files
   use mech9_section_words, only: print_section
   use mech9_section_layout, only: write_section

@@ -155,9 +155,9 @@ contains
     call move_alloc(file, sink)
     call append_sink(self%sinks, sink)
     if (given%run%source%columns%poses%n_links == 0) return
-    associate (time => given%model%request%time)
+    associate (time => given%model%request%time, poses => given%run%source%columns%poses)
       allocate (sink, source=new_xdmf(self%hdf5_path, given%model%mechanism%title, [(time%time(i), i=0, time%intervals)], &
-                                      given%run%source%columns%poses))
+                                      size(poses%vertex_link), size(poses%lines, 2)))
     end associate
     call append_sink(self%sinks, sink)
   end subroutine open_hdf5

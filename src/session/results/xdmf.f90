@@ -7,7 +7,6 @@ module mech9_xdmf
   use mech9_error, only: error_type
   use mech9_text, only: to_text
   use mech9_path, only: name_of, with_ending
-  use mech9_poses, only: poses_type
   use mech9_result_sink, only: result_sink_type
   use mech9_page, only: page_type
   use mech9_xml_text, only: xml_text
@@ -37,19 +36,20 @@ module mech9_xdmf
 contains
 
   !> The description of an HDF5 file that will be written. It has the name of this file with the ending .xdmf.
-  pure function new_xdmf(hdf5_path, title, times, poses) result(sink)
+  pure function new_xdmf(hdf5_path, title, times, n_vertices, n_lines) result(sink)
     character(len=*), intent(in) :: hdf5_path      !< name of the HDF5 file
     character(len=*), intent(in) :: title          !< title of the mechanism
     real(wp), intent(in) :: times(:)               !< (outputs) times of the results [s]
-    type(poses_type), intent(in) :: poses          !< vertices and lines that show the links
+    integer, intent(in) :: n_vertices              !< vertices that show the links
+    integer, intent(in) :: n_lines                 !< lines between them
     type(xdmf_type) :: sink
 
     sink%data_name = name_of(hdf5_path)
     sink%path = xdmf_path(hdf5_path)
     sink%title = title
     sink%times = times
-    sink%n_vertices = size(poses%vertex_link)
-    sink%n_lines = size(poses%lines, 2)
+    sink%n_vertices = n_vertices
+    sink%n_lines = n_lines
     sink%is_open = .true.
   end function new_xdmf
 

@@ -8,7 +8,6 @@ module mech9_study_columns
   use mech9_text, only: string_type
   use mech9_error, only: error_type, raise, exit_data
   use mech9_data_file, only: data_file_type
-  use mech9_columns, only: columns_type
   use mech9_hdf5_file, only: hdf5_file_type
   use mech9_column_sets, only: column_set_list_type, new_column_set, scale_length
   use mech9_hdf5_series, only: hdf5_series_type
@@ -74,22 +73,21 @@ contains
   end function numbers_of_run
 
   !> Make the data sets for the runs of a model in a new file, with their scales; all numbers are NaN.
-  subroutine create(self, file, columns, given, runs)
+  subroutine create(self, file, given, runs)
     class(study_columns_type), intent(inout) :: self   !< the columns
     type(hdf5_file_type), intent(inout) :: file        !< the open file, with the scale `run`
-    type(columns_type), intent(in) :: columns          !< of a run
     type(data_file_type), intent(in) :: given          !< the data file
     integer, intent(in) :: runs                        !< how many the file has
     type(string_type), allocatable :: names(:)
     integer :: i
 
-    call self%begin(columns, given, runs)
+    call self%begin(given, runs)
     call self%series%create(file)
     associate (time => given%model%request%time)
-      call file%put('time', [(time%time(i), i=0, time%intervals)], 'time', columns%units(1)%text)
+      call file%put('time', [(time%time(i), i=0, time%intervals)], 'time', given%run_columns%units(1)%text)
     end associate
     call file%make_scale('time')
-    call put_scales(file, given%model%mechanism, columns)
+    call put_scales(file, given%model%mechanism, given%run_columns)
     call self%series%attach(file)
     call self%series%list_names(names)
     call file%put('study/columns', names, 'data sets over the runs and time')
@@ -118,14 +116,13 @@ contains
 
   !> Open the data sets of a file that is continued. It is a failure of the file where they are not those of the runs of
   !> the model.
-  subroutine open_columns(self, file, columns, given, runs)
+  subroutine open_columns(self, file, given, runs)
     class(study_columns_type), intent(inout) :: self   !< the columns
     type(hdf5_file_type), intent(inout) :: file        !< the open file
-    type(columns_type), intent(in) :: columns          !< of a run
     type(data_file_type), intent(in) :: given          !< the data file
     integer, intent(in) :: runs                        !< how many the file has
 
-    call self%begin(columns, given, runs)
+    call self%begin(given, runs)
     call self%series%open(file)
   end subroutine open_columns
 
@@ -142,18 +139,17 @@ contains
   end subroutine open_unknown
 
   !> Prepare the data sets of a model.
-  subroutine begin(self, columns, given, runs)
+  subroutine begin(self, given, runs)
     class(study_columns_type), intent(inout) :: self   !< the columns
-    type(columns_type), intent(in) :: columns          !< of a run
     type(data_file_type), intent(in) :: given          !< the data file
     integer, intent(in) :: runs                        !< how many the file has
     type(column_layout_type) :: layout
     type(column_set_list_type) :: list
 
     layout%times = given%model%request%time%intervals + 1
-    self%numbers = columns%width()*layout%times
+    self%numbers = given%run_columns%width()*layout%times
     self%runs = runs
-    call layout%add(list, given%model%mechanism, columns)
+    call layout%add(list, given%model%mechanism, given%run_columns)
     call self%series%start_fixed(list%count, self%numbers, runs, .true.)
     call self%series%add_all(list)
   end subroutine begin

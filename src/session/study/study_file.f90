@@ -7,7 +7,6 @@ module mech9_study_file
   use mech9_system, only: interrupted
   use mech9_clock, only: pacer_type
   use mech9_data_file, only: data_file_type
-  use mech9_columns, only: columns_type
   use mech9_hdf5_file, only: hdf5_file_type
   use mech9_column_sets, only: new_column_set
   use mech9_hdf5_series, only: hdf5_series_type
@@ -87,13 +86,12 @@ contains
   end subroutine create
 
   !> Give a file that was created, and has no name yet, the columns of the runs of a model.
-  subroutine create_columns(self, columns, given, err)
+  subroutine create_columns(self, given, err)
     class(study_file_type), intent(inout) :: self             !< the file
-    type(columns_type), intent(in) :: columns                 !< of a run
     type(data_file_type), intent(in) :: given                 !< the data file
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
 
-    call self%columns%create(self%file, columns, given, self%layout%runs_of_part())
+    call self%columns%create(self%file, given, self%layout%runs_of_part())
     call self%tell(err)
   end subroutine create_columns
 
@@ -109,13 +107,12 @@ contains
 
   !> Open the columns of a file that is continued. Fail with exit_file where they are not those of the runs of the
   !> model.
-  subroutine open_columns(self, columns, given, err)
+  subroutine open_columns(self, given, err)
     class(study_file_type), intent(inout) :: self             !< the file
-    type(columns_type), intent(in) :: columns                 !< of a run
     type(data_file_type), intent(in) :: given                 !< the data file
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
 
-    call self%columns%open(self%file, columns, given, self%layout%runs_of_part())
+    call self%columns%open(self%file, given, self%layout%runs_of_part())
     call self%tell(err)
   end subroutine open_columns
 

@@ -4,7 +4,6 @@ module mech9_study_layout
   use mech9_data_file, only: data_file_type
   use mech9_hdf5_file, only: hdf5_file_type
   use mech9_hdf5_reading, only: read_text, read_texts, read_integer, has_data_set
-  use mech9_quantity_record, only: quantity_record_type
   implicit none
   private
   public :: study_layout_type, layout_of, write_layout, read_layout
@@ -36,9 +35,8 @@ contains
   end function runs_of_part
 
   !> Form the layout of a study.
-  subroutine layout_of(given, quantities, definition, part, layout)
+  subroutine layout_of(given, definition, part, layout)
     type(data_file_type), intent(in) :: given                 !< the data file
-    type(quantity_record_type), intent(in) :: quantities      !< with their columns
     character(len=*), intent(in) :: definition                !< text that determines the numbers of the study
     integer, intent(in) :: part(2)                            !< number of the part, and how many parts there are
     type(study_layout_type), intent(out) :: layout            !< names and units
@@ -55,7 +53,7 @@ contains
       allocate (layout%quantities(size(requested)), layout%units(size(requested)), layout%meanings(size(requested)))
       do i = 1, size(requested)
         layout%quantities(i)%text = requested(i)%name
-        layout%units(i)%text = quantities%unit_of(i)
+        layout%units(i)%text = given%quantities%unit_of(i)
         layout%meanings(i)%text = trim(requested(i)%take)//' of '//requested(i)%column
         if (requested(i)%take == 'exponent') layout%meanings(i)%text = 'Lyapunov exponent, largest first'
         if (requested(i)%take == 'error') layout%meanings(i)%text = 'standard error of an exponent'

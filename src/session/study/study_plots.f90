@@ -8,7 +8,6 @@ module mech9_study_plots
   use mech9_plot_request, only: is_of_section
   use mech9_study_plot, only: study_plot_type
   use mech9_heading, only: new_heading
-  use mech9_quantity_record, only: quantity_record_type
   use mech9_study_statistics, only: study_statistics_type
   implicit none
   private
@@ -25,11 +24,10 @@ module mech9_study_plots
 contains
 
   !> Read the requests before the runs. A wrong one is an error of the command line.
-  subroutine open_plots(self, options, given, quantities, table, err)
+  subroutine open_plots(self, options, given, table, err)
     class(study_plots_type), intent(inout) :: self         !< the plots
     type(command_line_type), intent(in) :: options         !< the command line
     type(data_file_type), intent(in) :: given              !< the data file
-    type(quantity_record_type), intent(in) :: quantities   !< with their columns
     character(len=*), intent(in) :: table                  !< file of the table; empty or '-': none
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     type(string_type), allocatable :: requests(:), names(:), units(:)
@@ -44,7 +42,7 @@ contains
     end do
     do i = 1, size(given%model%request%quantities)
       names(n + i)%text = given%model%request%quantities(i)%name
-      units(n + i)%text = quantities%unit_of(i)
+      units(n + i)%text = given%quantities%unit_of(i)
     end do
     call options%arguments('plot', requests)
     ! the points of a section are drawn with them

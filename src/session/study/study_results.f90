@@ -7,19 +7,16 @@ module mech9_study_results
   use mech9_version, only: name_and_version
   use mech9_command_line, only: command_line_type
   use mech9_data_file, only: data_file_type
-  use mech9_columns, only: columns_type
   use mech9_table, only: table_type
   use mech9_progress, only: progress_type
-  use mech9_heading, only: heading_of
+  use mech9_heading, only: new_heading
   use mech9_written_files, only: result_paths_type, find_result_paths, standard_output_path
-  use mech9_quantity_record, only: quantity_record_type
   use mech9_run_maker, only: made_run_type
   use mech9_study_sink, only: study_sink_type
   use mech9_study_sums, only: study_sums_type
   use mech9_study_definition, only: define_study
   use mech9_study_file, only: study_file_type, not_made
   use mech9_study_layout, only: study_layout_type, layout_of
-  use mech9_design_run, only: columns_of_runs
   use mech9_hdf5_record, only: write_provenance
   use mech9_study_section, only: begin_section, add_points
   use mech9_section_layout, only: write_section
@@ -47,13 +44,12 @@ module mech9_study_results
 contains
 
   !> Open the files that are asked for. After an error none is open, and none has changed where the other one cannot be opened.
-  subroutine open_results(self, options, given, quantities, err)
+  subroutine open_results(self, options, given, err)
     class(study_results_type), intent(out) :: self            !< the files
     type(command_line_type), intent(in) :: options            !< the command line
     type(data_file_type), intent(in) :: given                 !< the data file
-    type(quantity_record_type), intent(in) :: quantities      !< with their columns
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
-    type(columns_type) :: columns
+    type(string_type), allocatable :: names(:), units(:)
     type(error_type), allocatable :: at_close
     type(study_layout_type) :: layout
     character(len=:), allocatable :: definition
@@ -68,7 +64,7 @@ contains
       if (options%has('continue')) then
         call continue_file(self, options, definition, err)
       else
-        call layout_of(given, quantities, definition, self%part, layout)
+        call layout_of(given, definition, self%part, layout)
         call self%file%create(self%paths%hdf5, layout, err)
         if (.not. allocated(err)) call write_provenance(self%file%file, options, given)
       end if
@@ -78,10 +74,10 @@ contains
         return
       end if
     end if
-    columns = columns_of_study(given, quantities)
-    allocate (self%row(columns%count), source=0.0_wp)
+    call list_columns(given, names, units)
+    allocate (self%row(size(names)), source=0.0_wp)
     if (self%paths%table /= '') &
-      call self%table%open(self%paths%table, heading_of(given%model%mechanism%title, columns), &
+      call self%table%open(self%paths%table, new_heading(given%model%mechanism%title, names, units), &
                            name_and_version(given%model%program), err)
     if (.not. allocated(err) .and. self%paths%hdf5 /= '' .and. .not. options%has('continue')) call self%file%publish(err)
     if (allocated(err)) then
@@ -97,13 +93,11 @@ contains
     type(command_line_type), intent(in) :: options            !< the command line
     type(data_file_type), intent(in) :: given                 !< the data file
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
-    type(columns_type) :: columns
 
-    call columns_of_runs(given%model, columns)
     if (options%has('continue')) then
-      call self%file%open_columns(columns, given, err)
+      call self%file%open_columns(given, err)
     else
-      call self%file%create_columns(columns, given, err)
+      call self%file%create_columns(given, err)
     end if
   end subroutine begin_columns
 
@@ -124,25 +118,31 @@ contains
     call self%file%close(at_close)
   end subroutine continue_file
 
-  !> The columns of the table of a study.
-  function columns_of_study(given, quantities) result(columns)
-    type(data_file_type), intent(in) :: given              !< the data file
-    type(quantity_record_type), intent(in) :: quantities   !< with their columns
-    type(columns_type) :: columns
-    type(string_type), allocatable :: names(:), units(:)
-    integer :: i
+  !> Names and units of the columns of the table of a study.
+  pure subroutine list_columns(given, names, units)
+    type(data_file_type), intent(in) :: given                  !< the data file
+    type(string_type), allocatable, intent(out) :: names(:)    !< (columns)
+    type(string_type), allocatable, intent(out) :: units(:)    !< (columns)
+    type(string_type), allocatable :: parameters(:), their_units(:)
+    integer :: i, n
 
-    allocate (columns%names(0), columns%units(0), columns%long_names(0))
-    call columns%append('run', '')
-    call given%list_parameters(names, units)
-    do i = 1, size(names)
-      call columns%append(names(i)%text, units(i)%text)
+    call given%list_parameters(parameters, their_units)
+    n = size(parameters)
+    allocate (names(n + size(given%model%request%quantities) + 2))
+    allocate (units(size(names)))
+    names(1)%text = 'run'
+    units(1)%text = ''
+    do i = 1, n
+      names(1 + i)%text = parameters(i)%text
+      units(1 + i)%text = their_units(i)%text
     end do
     do i = 1, size(given%model%request%quantities)
-      call columns%append(given%model%request%quantities(i)%name, quantities%unit_of(i))
+      names(1 + n + i)%text = given%model%request%quantities(i)%name
+      units(1 + n + i)%text = given%quantities%unit_of(i)
     end do
-    call columns%append('exit_code', '')
-  end function columns_of_study
+    names(size(names))%text = 'exit_code'
+    units(size(names))%text = ''
+  end subroutine list_columns
 
   !> Whether a run was made before, and is in the file that is continued.
   logical function is_made(self, place)

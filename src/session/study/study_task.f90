@@ -9,8 +9,6 @@ module mech9_study_task
   use mech9_command_line, only: command_line_type
   use mech9_data_file, only: data_file_type
   use mech9_written_files, only: result_paths_type, find_result_paths
-  use mech9_quantity_record, only: quantity_record_type
-  use mech9_study_check, only: check_study
   use mech9_study_runs, only: study_runs_type
   use mech9_study_results, only: study_results_type
   use mech9_signal_interruption, only: signal_interruption_type
@@ -42,14 +40,13 @@ contains
     type(data_file_type), intent(inout), target :: given    !< the data file; it gets the errors
     logical, intent(out) :: reported                        !< a report was asked for, and it is written
     type(processes_type), intent(inout) :: processes  !< those that make the runs together
-    type(quantity_record_type) :: quantities
     type(study_results_type), target :: results
     type(study_plots_type) :: plots
     type(signal_interruption_type) :: interruption
     type(error_type), allocatable :: err
 
     reported = .false.
-    call judge(options, given, quantities, err)
+    call judge(options, given, err)
     if (.not. allocated(err) .and. processes%count > 1) call refuse_processes(given, err)
     call processes%agree(err)
     if (.not. (processes%is_first .or. allocated(err))) then
@@ -60,31 +57,30 @@ contains
       return
     end if
     if (.not. allocated(err)) then
-      call open_files(options, given, quantities, results, plots, err)
+      call open_files(options, given, results, plots, err)
       call processes%agree(err)
     end if
     if (allocated(err)) then
       call given%fail(err)
     else
-      call carry_out(options, given, quantities, results, plots, reported, processes)
+      call carry_out(options, given, results, plots, reported, processes)
     end if
   end subroutine work_on_study
 
   !> Open the files of a study, and read the requests for its plots.
-  subroutine open_files(options, given, quantities, results, plots, err)
+  subroutine open_files(options, given, results, plots, err)
     type(command_line_type), intent(in) :: options          !< the command line
     type(data_file_type), intent(in) :: given               !< the data file
-    type(quantity_record_type), intent(in) :: quantities    !< with their columns
     type(study_results_type), intent(inout) :: results      !< gets the open files
     type(study_plots_type), intent(inout) :: plots          !< gets the requests
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     type(result_paths_type) :: paths
 
     call find_result_paths(options, paths, given)
-    call plots%open(options, given, quantities, paths%table, err)
+    call plots%open(options, given, paths%table, err)
     if (allocated(err)) return
     if (.not. options%has('quiet')) call print_notes(options, given)
-    call results%open(options, given, quantities, err)
+    call results%open(options, given, err)
     if (allocated(err)) return
     if (allocated(results%section)) then
       call check_section_plots(options, given, err, results%section%names)
@@ -95,10 +91,9 @@ contains
 
   !> Report a study that cannot be carried out, and find the columns of its quantities. Runs keep their columns only where a file
   !> gets them.
-  subroutine judge(options, given, quantities, err)
+  subroutine judge(options, given, err)
     type(command_line_type), intent(in) :: options          !< the command line
     type(data_file_type), intent(inout) :: given            !< the data file
-    type(quantity_record_type), intent(out) :: quantities   !< with their columns
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     type(result_paths_type) :: paths
 
@@ -106,7 +101,7 @@ contains
     if (paths%hdf5 == '') given%model%request%output%hdf5_runs = .false.
     if (options%number('threads', 1) > most_threads) &
       call raise(err, exit_usage, '--threads takes at most '//to_text(most_threads))
-    if (.not. allocated(err)) call check_study(given%model, quantities, err)
+    if (.not. allocated(err)) call given%judge_study(err)
     if (.not. allocated(err) .and. given%model%request%output%hdf5_runs) call refuse_varied_times(given, err)
     if (.not. allocated(err)) call refuse_parts(options, given, err)
   end subroutine judge
@@ -172,10 +167,9 @@ contains
   end subroutine print_notes
 
   !> Make the runs, close the files, and tell how the study went. Where every run failed, the first failure is that of the study.
-  subroutine carry_out(options, given, quantities, results, plots, reported, processes)
+  subroutine carry_out(options, given, results, plots, reported, processes)
     type(command_line_type), intent(in) :: options          !< the command line
     type(data_file_type), intent(inout), target :: given    !< the data file; it gets the errors
-    type(quantity_record_type), intent(in) :: quantities    !< with their columns
     type(study_results_type), intent(inout), target :: results   !< open, and closed on return
     type(study_plots_type), intent(inout) :: plots          !< the plots that are requested
     logical, intent(inout) :: reported                      !< the report is written
@@ -206,7 +200,7 @@ contains
                                     with_progress=.false.)
       call propagate(given%model, given%variable, interruption, propagation, without_shares)
     end if
-    if (.not. quiet) call print_study(error_unit, given%model, quantities, runs, propagation, clock)
+    if (.not. quiet) call print_study(error_unit, given%model, given%quantities, runs, propagation, clock)
     if (.not. quiet .and. allocated(without_shares)) &
       write (error_unit, '(a)') 'note: no shares by derivatives: '//without_shares%message
     if (.not. quiet .and. kept) call results%print_paths(error_unit)
@@ -233,7 +227,7 @@ contains
     end if
     if (.not. options%has('report')) return
     call begin_report(json, given%model, given%diagnostics, results%paths%table)
-    call add_study(json, given%model, quantities, runs, propagation)
+    call add_study(json, given%model, given%quantities, runs, propagation)
     call json%end_object()
     call json%save(options%argument('report'), err)
     reported = .true.

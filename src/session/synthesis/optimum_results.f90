@@ -8,9 +8,8 @@ module mech9_optimum_results
   use mech9_command_line, only: command_line_type
   use mech9_text, only: string_type
   use mech9_data_file, only: data_file_type
-  use mech9_columns, only: columns_type
   use mech9_table, only: table_type
-  use mech9_heading, only: heading_of
+  use mech9_heading, only: new_heading
   use mech9_text_file, only: replace_text
   use mech9_written_files, only: result_paths_type, find_result_paths, standard_output_path
   use mech9_hdf5_reading, only: read_text
@@ -165,18 +164,22 @@ contains
     type(data_file_type), intent(in) :: given               !< the data file
     type(table_type), intent(inout) :: table                !< the table
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    type(columns_type) :: columns
+    type(string_type), allocatable :: parameters(:), their_units(:)
     type(string_type), allocatable :: names(:), units(:)
-    integer :: i
+    integer :: i, n
 
-    allocate (columns%names(0), columns%units(0), columns%long_names(0))
-    call columns%append('value', '')
-    call given%list_parameters(names, units)
-    do i = 1, size(names)
-      call columns%append(names(i)%text, units(i)%text)
+    call given%list_parameters(parameters, their_units)
+    n = size(parameters)
+    allocate (names(n + 2), units(n + 2))
+    names(1)%text = 'value'
+    units(1)%text = ''
+    do i = 1, n
+      names(1 + i)%text = parameters(i)%text
+      units(1 + i)%text = their_units(i)%text
     end do
-    call columns%append('starts', '')
-    call table%open(path, heading_of(given%model%mechanism%title, columns), name_and_version(given%model%program), err)
+    names(n + 2)%text = 'starts'
+    units(n + 2)%text = ''
+    call table%open(path, new_heading(given%model%mechanism%title, names, units), name_and_version(given%model%program), err)
   end subroutine open_table
 
   !> Write a row for each distinct design, best first, and close the table.

@@ -4,7 +4,7 @@ module test_study_columns
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp
-  use mech9_columns, only: columns_type, kinematic_columns
+  use mech9_columns, only: kinematic_columns
   use mech9_error, only: error_type, exit_data
   use mech9_hdf5_copying, only: extents_of, attribute_of
   use mech9_hdf5_file, only: hdf5_file_type
@@ -45,20 +45,20 @@ contains
     type(tester_type), intent(inout) :: tester                 !< counts the checks
     real(wp), allocatable, intent(out) :: numbers(:)           !< of the third run
     type(data_file_type) :: given
-    type(columns_type) :: columns
     type(study_columns_type) :: runs_columns
     type(hdf5_file_type) :: file
     type(error_type), allocatable :: err
     integer :: i
 
     call model_from_text(tester, data, kinematics, given%model)
-    columns = kinematic_columns(given%model%mechanism, given%model%request%output)
+    given%run_columns = kinematic_columns(given%model%mechanism, given%model%request%output)
     call file%create(path, err)
     call tester%no_error(err, 'a file')
     call file%put('run', [(i, i=1, runs)], 'number of the run')
     call file%make_scale('run')
-    call runs_columns%create(file, columns, given, runs)
-    call tester%is_true(runs_columns%are_there() .and. runs_columns%numbers_of_run() == 3*columns%width(), 'three times of a run')
+    call runs_columns%create(file, given, runs)
+    call tester%is_true(runs_columns%are_there() .and. runs_columns%numbers_of_run() == 3*given%run_columns%width(), &
+                        'three times of a run')
     numbers = [(0.5_wp*i, i=1, runs_columns%numbers_of_run())]
     call file%flush()
     call runs_columns%write_run(file, 3, numbers)

@@ -7,7 +7,6 @@ module test_study_runs
   use mech9_design_run, only: find_quantities
   use mech9_error, only: error_type, exit_done, exit_usage
   use mech9_data_file, only: data_file_type
-  use mech9_quantity_record, only: quantity_record_type
   use mech9_run_evaluator, only: used_quantities
   use mech9_run_maker, only: run_maker_type, made_run_type
   use mech9_signal_interruption, only: signal_interruption_type
@@ -39,7 +38,6 @@ module test_study_runs
   !> All that the runs of a study need.
   type :: study_case_type
     type(data_file_type) :: given
-    type(quantity_record_type) :: quantities
   end type study_case_type
 
 contains
@@ -66,7 +64,7 @@ contains
     call model_from_text(tester, text, kinematics, this%given%model)
     call this%given%diagnostics%add_source(this%given%document%source, number)
     call this%given%prepare_variable()
-    call find_quantities(this%given%model, this%quantities, err)
+    call find_quantities(this%given%model, this%given%quantities, err)
     call tester%no_error(err, 'quantities of the study')
   end subroutine prepare
 
@@ -83,7 +81,7 @@ contains
     type(error_type), allocatable :: err
 
     call options_of(tester, line, options)
-    call results%open(options, this%given, this%quantities, err)
+    call results%open(options, this%given, err)
     call tester%no_error(err, 'results of '//line)
     call runs%begin(this%given%model, results, ahead, .false., interruption)
   end subroutine begin
@@ -158,7 +156,7 @@ contains
     end do
     call remove_file(stem//'.dat')
     open (newunit=unit, file=stem//'.txt')
-    call print_study(unit, this%given%model, this%quantities, runs, [propagation_type ::], 1.5_wp)
+    call print_study(unit, this%given%model, this%given%quantities, runs, [propagation_type ::], 1.5_wp)
     call text_of_unit(tester, unit, text)
     call tester%is_true(index(text, '6 runs: 1.5 s'//eol) == 1 .and. index(text, 'x: 1.1 to 2.3 m'//eol) > 0, 'words: '//text)
   end subroutine order

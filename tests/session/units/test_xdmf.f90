@@ -4,7 +4,7 @@ module test_xdmf
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_model, only: model_type
-  use mech9_poses, only: poses_of
+  use mech9_poses, only: poses_type, poses_of
   use mech9_xdmf, only: xdmf_type, new_xdmf, xdmf_path
   use mech9_small_models, only: slider_crank, eol
   use mech9_text_models, only: model_from_text
@@ -41,12 +41,15 @@ contains
       integer, intent(in) :: rows    !< of the results
       integer, intent(in) :: shown   !< how many of them are shown
       type(xdmf_type) :: sink
+      type(poses_type) :: poses
       type(error_type), allocatable :: err
       character(len=:), allocatable :: text
       real(wp), allocatable :: numbers(:, :)
       integer :: i
 
-      sink = new_xdmf('test_xdmf.h5', title, [(2.0_wp + 2.0_wp*i/(rows - 1), i=0, rows - 1)], poses_of(model%mechanism))
+      poses = poses_of(model%mechanism)
+      sink = new_xdmf('test_xdmf.h5', title, [(2.0_wp + 2.0_wp*i/(rows - 1), i=0, rows - 1)], size(poses%vertex_link), &
+                      size(poses%lines, 2))
       allocate (numbers(1, rows), source=0.0_wp)
       call sink%write_rows(numbers, err)
       call sink%close(err)

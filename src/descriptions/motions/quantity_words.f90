@@ -1,5 +1,5 @@
-!> The quantities of a run in lines.
-module mech9_quantity_results
+!> The quantities of a run in words.
+module mech9_quantity_words
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use mech9_text, only: to_text
   use mech9_quantity_record, only: quantity_record_type
@@ -32,4 +32,4 @@ contains
       end associate
     end do
   end subroutine print_quantities
-end module mech9_quantity_results
+end module mech9_quantity_words
