@@ -4,6 +4,7 @@ module mech9_recorded_branches
   use mech9_error, only: error_type
   use mech9_text, only: string_type, texts_of_one_length
   use mech9_json, only: json_type
+  use mech9_columns, only: columns_type
   use mech9_model, only: model_type
   use mech9_simulation, only: interruption_type
   use mech9_explanation, only: explain
@@ -80,13 +81,13 @@ contains
     class(data_file_type), intent(in) :: given                 !< the data file
     character(len=*), intent(in) :: parameter                  !< name of the parameter
     type(string_type), allocatable, intent(out) :: names(:)    !< of the columns
+    type(columns_type) :: columns
     integer :: i
 
     do i = 1, size(given%model%parameters)
       if (given%model%parameters(i)%name /= parameter) cycle
-      associate (columns => columns_of_branches(given%model, given%model%parameters(i), .true., .true.))
-        names = columns%names(:columns%count)
-      end associate
+      columns = columns_of_branches(given%model, given%model%parameters(i), .true., .true.)
+      names = columns%names(:columns%count)
       return
     end do
     allocate (names(0))
