@@ -23,6 +23,7 @@ module mech9_quantity_gradient
     real(wp), allocatable :: integral(:)   !< integrals of the derivatives over time
     real(wp), allocatable :: product(:)    !< integrals of value times derivative over time
     real(wp), allocatable :: largest(:)    !< largest magnitudes so far
+    logical :: is_lost = .false.           !< the column was not known around an event
   contains
     procedure :: begin
     procedure :: add_piece
@@ -88,6 +89,10 @@ contains
     real(wp) :: rms
 
     gradient = 0.0_wp
+    if (self%is_lost .and. all(take /= [character(len=5) :: 'start', 'end', 'at'])) then
+      gradient = ieee_value(rms, ieee_quiet_nan)
+      return
+    end if
     select case (take)
     case ('start')
       gradient = self%first

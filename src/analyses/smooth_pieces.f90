@@ -20,6 +20,7 @@ module mech9_smooth_pieces
     real(wp) :: to = 0.0_wp               !< its end [s]
     logical :: from_joint = .false.       !< it begins behind a joint
     logical :: to_joint = .false.         !< it ends before a joint
+    logical :: is_short = .false.         !< a step of the integration ends it, and it is far shorter than others: nothing inside is known
     real(wp), allocatable :: from_rate(:) !< (P) derivatives of the time of the joint by the parameters; NaN where there is none
     real(wp), allocatable :: to_rate(:)   !< (P) those of the joint at its end
   end type smooth_piece_type

@@ -2,15 +2,16 @@
 !>
 !> A column that comes with its rate and acceleration, or is one of these, is a polynomial through four neighbouring outputs with
 !> two derivatives each. Others are polynomials through values at further times, which the motion must visit. No polynomial goes
-!> across a joint of a law: the motion visits both sides of a joint, which count as outputs here. None goes across an event at which the
-!> column jumps, whose time is not known before: chords take its place between two outputs. The derivatives of the column by
-!> parameters are followed by polynomials of the same kind, so that they are those of the number that is found.
+!> across a joint of a law or an event: the motion visits both sides of it, which count as outputs here. Where a motion cannot stand at an
+!> event, chords take the place of polynomials between two outputs, and there are no derivatives. Those of the column by parameters are
+!> followed by polynomials of the same kind, so that they are those of the number that is found.
 module mech9_tracked_quantity
   use mech9_kinds, only: wp
   use mech9_chebyshev, only: chebyshev_type
   use mech9_smooth_pieces, only: smooth_piece_type
   use mech9_hermite, only: hermite_type, build_hermite
-  use mech9_interval_polynomials, only: polynomial, values_between, changes_between, changes_at, moved_with
+  use mech9_interval_polynomials, only: polynomial, values_between, changes_between, changes_at, moved_with, &
+    by_positions, best_known, value_between
   use mech9_quantity_sums, only: quantity_sums_type
   use mech9_quantity_gradient, only: quantity_gradient_type
   implicit none
@@ -21,6 +22,9 @@ module mech9_tracked_quantity
   !> Largest difference of the polynomials through two and through all outputs, over the variation of the column, with which the
   !> motion counts as smooth there; else the polynomial goes through the two outputs alone.
   real(wp), parameter :: smooth_difference = 1.0e-3_wp
+  !> Outputs nearer to each other than this part of an interval beside them take no part in its polynomial: they enlarge round-off by its
+  !> fifth power.
+  real(wp), parameter :: least_neighbour = 0.1_wp
 
   type :: tracked_quantity_type
     character(len=8) :: take = ''           !< start, end, min, max, peak, range, mean, rms, integral or at
@@ -41,6 +45,10 @@ module mech9_tracked_quantity
     logical, private :: is_cut = .false.    !< a joint was reached, and no piece has begun since then
     real(wp), private :: value_before = 0.0_wp   !< value before this joint
     integer, private :: count = 0           !< outputs kept
+    real(wp), private :: longest = 0.0_wp   !< longest interval between two of them so far [s]
+    logical, private :: waits(2) = .false.  !< the least and the largest value are at a joint before short pieces, and move with its time
+    real(wp), private :: joint_before = 0.0_wp   !< time of this joint [s]
+    real(wp), allocatable, private :: rate_before(:)   !< (P) its derivatives by parameters
     integer, private :: done = 0            !< intervals between these that were taken into account
     real(wp), private :: t(most_outputs) = 0.0_wp
     real(wp), private :: y(0:2, most_outputs) = 0.0_wp    !< position, rate and acceleration at the kept outputs
@@ -143,7 +151,11 @@ contains
     real(wp), intent(in) :: changes(:, :)                 !< (P,rule%n) its derivatives by parameters, where they are followed
 
     if (.not. self%follows()) return
-    if (is_broken(self, jump)) then
+    if (is_broken(self, jump) .and. allocated(self%changes)) self%gradient%is_lost = .true.
+    if (piece%is_short) then
+      if (self%family(0) == 0) call take_short(self, piece, row(1), values([1, rule%n]), changes(:, [1, rule%n]))
+      return
+    else if (is_broken(self, jump)) then
       call take_chords(self, rule, piece, row, values)
     else if (self%family(0) == 0) then
       call take_values(self, rule, piece, row(1), values, changes)
@@ -160,13 +172,13 @@ contains
   end subroutine end_piece
 
   !> Whether events within an interval leave no polynomial for the column there. Positions go on through an impact, so that their sums
-  !> do, and those of rates are the ways. Where derivatives by parameters are followed, such quantities are refused.
+  !> do, and those of rates are the ways.
   pure logical function is_broken(self, jump)
     type(tracked_quantity_type), intent(in) :: self       !< the quantity
     integer, intent(in) :: jump                           !< lowest derivative of positions that jumps in the interval; 3: none
     logical :: sums
 
-    is_broken = jump <= 2 .and. .not. allocated(self%changes)
+    is_broken = jump <= 2
     if (self%family(0) == 0) return
     sums = any(self%take == [character(len=8) :: 'mean', 'integral'])
     if (self%order == 0) is_broken = is_broken .and. jump == 1 .and. .not. (sums .or. self%take == 'rms')
@@ -254,10 +266,24 @@ contains
     call self%sums%add_piece(rule, piece%from, to, values)
     if (.not. allocated(self%changes)) return
     call self%gradient%add_piece(rule, piece%from, to, values, changes)
+    call move_extremes(self, 2.0_wp*(self%joint_before - piece%from)/(to - piece%from) - 1.0_wp)
     if (self%sums%low < before%low) self%gradient%low = between(self%sums%time_low)
     if (self%sums%high > before%high) self%gradient%high = between(self%sums%time_high)
 
   contains
+
+    !> Let extremes at a joint before short pieces move with its time. Their slope there is that of the polynomial behind these.
+    pure subroutine move_extremes(self, x)
+      type(tracked_quantity_type), intent(inout) :: self    !< the quantity
+      real(wp), intent(in) :: x                             !< place of the joint, -1 at the beginning of the interval
+      real(wp) :: slope
+
+      if (.not. any(self%waits)) return
+      slope = rule%value_at(2.0_wp/(to - piece%from)*matmul(rule%derivative, values), x)
+      if (self%waits(1)) self%gradient%low = self%gradient%low + slope*self%rate_before
+      if (self%waits(2)) self%gradient%high = self%gradient%high + slope*self%rate_before
+      self%waits = .false.
+    end subroutine move_extremes
 
     !> The derivatives at a time between the outputs, or of the value at a joint.
     pure function between(t)
@@ -273,6 +299,40 @@ contains
       if (allocated(piece%to_rate)) between = between + moved_with(piece%to_rate, slopes(rule%n), t, to, piece%from)
     end function between
   end subroutine take_values
+
+  !> Take a short interval into account by its ends. An extreme at a joint where it begins moves with the time of the joint as soon as the
+  !> slope is known there.
+  pure subroutine take_short(self, piece, to, values, changes)
+    type(tracked_quantity_type), intent(inout) :: self    !< the quantity
+    type(smooth_piece_type), intent(in) :: piece          !< the interval
+    real(wp), intent(in) :: to                            !< its end [s]
+    real(wp), intent(in) :: values(2)                     !< of its column at both ends
+    real(wp), intent(in) :: changes(:, :)                 !< (P,2) its derivatives by parameters, where they are followed
+    type(quantity_sums_type) :: before
+    real(wp) :: half
+    integer :: i
+
+    before = self%sums
+    call self%sums%add_chords([piece%from, to], values)
+    if (.not. allocated(self%changes)) return
+    if (allocated(piece%from_rate)) then
+      self%rate_before = piece%from_rate
+      self%joint_before = piece%from
+    end if
+    half = 0.5_wp*(to - piece%from)
+    self%gradient%integral = self%gradient%integral + half*(changes(:, 1) + changes(:, 2))
+    self%gradient%product = self%gradient%product + half*(values(1)*changes(:, 1) + values(2)*changes(:, 2))
+    if (self%sums%low < before%low) then
+      i = merge(1, 2, values(1) <= values(2))
+      self%gradient%low = changes(:, i)
+      self%waits(1) = i == 1 .and. allocated(piece%from_rate)
+    end if
+    if (self%sums%high > before%high) then
+      i = merge(1, 2, values(1) >= values(2))
+      self%gradient%high = changes(:, i)
+      self%waits(2) = i == 1 .and. allocated(piece%from_rate)
+    end if
+  end subroutine take_short
 
   !> Whether an interval matters where the rate of the polynomial through its ends does not keep its sign alone: an extreme of a
   !> position is sought.
@@ -335,10 +395,11 @@ contains
     type(quantity_sums_type) :: before
     type(hermite_type) :: local, wide
     real(wp), dimension(rule%n) :: values, wider
-    integer :: j, outputs(2)
+    integer :: i, j, outputs(2), known
 
     do j = self%done + 1, last
       outputs = [j, j + 1]
+      known = by_positions
       before = self%sums
       values = 0.0_wp
       if (has_extremes_at_ends(self, j)) then
@@ -348,7 +409,7 @@ contains
         associate (a => self%t(j), b => self%t(j + 1))
           call polynomial(self%t(j:j + 1), self%y(:, j:j + 1), local)
           call values_between(local, a, b, rule, self%order, values)
-          if (self%count > 2) then
+          if (self%count > 2 .and. all(abs(self%t(2:self%count) - self%t(:self%count - 1)) >= least_neighbour*abs(b - a))) then
             call polynomial(self%t(:self%count), self%y(:, :self%count), wide)
             call values_between(wide, a, b, rule, self%order, wider)
             if (maxval(abs(wider - values)) <= smooth_difference*(maxval(values) - minval(values))) then
@@ -356,25 +417,31 @@ contains
               outputs = [1, self%count]
             end if
           end if
+          known = best_known(rule, self%t(j:j + 1), self%longest, self%order, self%y(:, j), self%y(:, j + 1), values)
+          if (known /= by_positions) values = [(value_between(known, self%order, b - a, 0.5_wp*(1.0_wp + rule%points(i)), &
+                                                              self%y(:, j), self%y(:, j + 1)), i=1, rule%n)]
+          self%longest = max(self%longest, abs(b - a))
           call self%sums%add_piece(rule, a, b, values)
         end associate
       end if
-      if (allocated(self%changes)) call add_changes(self, rule, j, outputs, before, values)
+      if (allocated(self%changes)) call add_changes(self, rule, j, outputs, known, before, values)
     end do
     self%done = last
   end subroutine add_intervals
 
   !> Take the derivatives by parameters in an interval into account, by polynomials through the same outputs as that of the column.
-  pure subroutine add_changes(self, rule, j, outputs, before, values)
+  pure subroutine add_changes(self, rule, j, outputs, known, before, values)
     type(tracked_quantity_type), intent(inout) :: self   !< the quantity
     type(chebyshev_type), intent(in) :: rule             !< points in an interval
     integer, intent(in) :: j                             !< number of the interval
     integer, intent(in) :: outputs(2)                    !< first and last kept output of the polynomial
+    integer, intent(in) :: known                         !< from what the column is known between them
     type(quantity_sums_type), intent(in) :: before       !< the sums before this interval
     real(wp), intent(in) :: values(:)                    !< (rule%n) of the column at the points, where integrals are asked for
     type(hermite_type) :: hermite
     real(wp) :: changes(size(self%changes, 1), rule%n)
     logical :: summed
+    integer :: i
 
     summed = any(self%take == [character(len=8) :: 'mean', 'rms', 'integral'])
     if (.not. (summed .or. self%sums%low < before%low .or. self%sums%high > before%high)) return
@@ -383,6 +450,11 @@ contains
     end associate
     if (summed) then
       call changes_between(hermite, self%t(j), self%t(j + 1), rule, self%order, changes)
+      if (known /= by_positions) then
+        do i = 1, rule%n
+          changes(:, i) = known_between(0.5_wp*(1.0_wp + rule%points(i)))
+        end do
+      end if
       call self%gradient%add_piece(rule, self%t(j), self%t(j + 1), values, changes)
     end if
     if (self%sums%low < before%low) self%gradient%low = of_extreme(self%sums%time_low)
@@ -390,17 +462,29 @@ contains
 
   contains
 
+    !> The derivatives in a part of the interval by rates or by accelerations.
+    pure function known_between(x) result(gradient)
+      real(wp), intent(in) :: x   !< part of the interval, 0 to 1
+      real(wp) :: gradient(size(self%changes, 1))
+      integer :: p
+
+      do p = 1, size(gradient)
+        gradient(p) = value_between(known, self%order, self%t(j + 1) - self%t(j), x, self%dy(p, j, :), self%dy(p, j + 1, :))
+      end do
+    end function known_between
+
     !> The derivatives of an extreme.
     pure function of_extreme(t) result(gradient)
       real(wp), intent(in) :: t   !< its time [s]
       real(wp) :: gradient(size(self%changes, 1)), slopes(2), steps(rule%n)
 
       call changes_at(hermite, t, self%order, gradient)
+      if (known /= by_positions) gradient = known_between((t - self%t(j))/(self%t(j + 1) - self%t(j)))
       if (.not. any(self%at_joint(j:j + 1))) return
       associate (a => self%t(j), b => self%t(j + 1))
         steps = 2.0_wp/(b - a)*matmul(rule%derivative, values)
         slopes = steps([1, rule%n])
-        if (self%order == 0) slopes = self%y(1, j:j + 1)
+        if (self%order < 2) slopes = self%y(self%order + 1, j:j + 1)
         if (self%at_joint(j)) gradient = gradient + moved_with(self%rate(:, j), slopes(1), t, a, b)
         if (self%at_joint(j + 1)) gradient = gradient + moved_with(self%rate(:, j + 1), slopes(2), t, b, a)
       end associate

@@ -7,7 +7,7 @@ module mech9_design_run
   use mech9_variable_model, only: variable_model_type
   use mech9_simulation, only: interruption_type
   use mech9_run, only: run_type
-  use mech9_row_source, only: find_columns, find_section
+  use mech9_run_columns, only: find_columns, find_section
   use mech9_section_record, only: section_record_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type

@@ -7,6 +7,7 @@ module mech9_quantity_record
   use mech9_model, only: model_type
   use mech9_tangent, only: tangent_type
   use mech9_tracked_quantity, only: tracked_quantity_type
+  use mech9_smooth_pieces, only: smooth_piece_type
   use mech9_quantity_pieces, only: quantity_pieces_type
   use mech9_motion_event, only: motion_events_type
   use mech9_columns, only: columns_type
@@ -36,6 +37,17 @@ module mech9_quantity_record
     procedure :: times_before
     procedure :: take_between
     procedure :: take_output
+    procedure :: has_parts
+    procedure :: divide
+    procedure :: next_asked
+    procedure :: needs_inside
+    procedure :: needs_strides
+    procedure :: point_in
+    procedure :: first_jump
+    procedure :: begin_part
+    procedure :: take_row
+    procedure :: close_part
+    procedure :: leave_open
     procedure :: finish
     procedure :: unit_of
   end type quantity_record_type
@@ -192,7 +204,7 @@ contains
 
     allocate (times(0))
     if (self%is_empty()) return
-    call self%pieces%times_before(model, self%tracked, previous, t, times)
+    call self%pieces%times_before(model, previous, t, times)
     do i = 1, size(self%tracked)
       associate (at => self%tracked(i)%at)
         if (self%tracked(i)%take /= 'at') cycle
@@ -215,6 +227,116 @@ contains
     call take_times(self, row)
     call self%pieces%take_between(model, self%tracked, row, next, events)
   end subroutine take_between
+
+  !> Whether quantities are followed between outputs, so that pieces are of use.
+  pure logical function has_parts(self)
+    class(quantity_record_type), intent(in) :: self   !< the record
+
+    has_parts = .false.
+    if (.not. self%is_empty()) has_parts = self%pieces%is_followed()
+  end function has_parts
+
+  !> The pieces between two outputs in which laws are smooth, in a motion with events. To be called for all outputs behind the start.
+  subroutine divide(self, model, previous, t, list)
+    class(quantity_record_type), intent(inout) :: self                !< the record
+    type(model_type), intent(in) :: model                             !< the model
+    real(wp), intent(in) :: previous                                  !< time of the output before [s]
+    real(wp), intent(in) :: t                                         !< time of the output [s]
+    type(smooth_piece_type), allocatable, intent(out) :: list(:)      !< in the order of time
+
+    call self%pieces%divide(model, previous, t, list)
+  end subroutine divide
+
+  !> The next given time at which a value is wanted, behind one time and up to another; the former where there is none [s].
+  pure real(wp) function next_asked(self, from, to) result(next)
+    class(quantity_record_type), intent(in) :: self   !< the record
+    real(wp), intent(in) :: from                      !< time behind which [s]
+    real(wp), intent(in) :: to                        !< time up to which [s]
+    integer :: i
+
+    next = from
+    do i = 1, size(self%tracked)
+      associate (at => self%tracked(i)%at)
+        if (self%tracked(i)%take /= 'at') cycle
+        if (.not. (at - from)*(to - from) > 0.0_wp .or. abs(at - from) > abs(to - from)) cycle
+        if (.not. abs(next - from) > 0.0_wp .or. abs(at - from) < abs(next - from)) next = at
+      end associate
+    end do
+  end function next_asked
+
+  !> Whether values between outputs are needed.
+  pure logical function needs_inside(self)
+    class(quantity_record_type), intent(in) :: self   !< the record
+
+    needs_inside = self%pieces%needs_inside()
+  end function needs_inside
+
+  !> Whether the ends of strides of a motion with events count as outputs: between events there may be few of these.
+  pure logical function needs_strides(self, events)
+    class(quantity_record_type), intent(in) :: self   !< the record
+    integer, intent(in) :: events                     !< how many there were so far
+
+    needs_strides = self%pieces%needs_inside() .or. events > 0
+  end function needs_strides
+
+  !> The time of a point in a part of a piece.
+  pure real(wp) function point_in(self, part, k) result(time)
+    class(quantity_record_type), intent(in) :: self   !< the record
+    type(smooth_piece_type), intent(in) :: part       !< the part
+    integer, intent(in) :: k                          !< number of the point, up to `points_between`
+
+    time = self%pieces%point_in(part, k)
+  end function point_in
+
+  !> The lowest derivative of positions that jumps within a part, up to the present time: 1 rates, 2 accelerations, 3 none.
+  pure integer function first_jump(self, part, events) result(jump)
+    class(quantity_record_type), intent(in) :: self     !< the record
+    type(smooth_piece_type), intent(in) :: part         !< the part
+    type(motion_events_type), intent(in) :: events      !< of the motion so far
+
+    jump = self%pieces%first_jump(part, events)
+  end function first_jump
+
+  !> Begin a part: at a joint of laws, or behind an event.
+  pure subroutine begin_part(self, row, rate, events)
+    class(quantity_record_type), intent(inout) :: self  !< the record
+    real(wp), intent(in) :: row(:)                      !< numbers at its beginning, time first
+    real(wp), allocatable, intent(in) :: rate(:)        !< (P) derivatives of the time of the joint by the parameters
+    type(motion_events_type), intent(in) :: events      !< of the motion so far
+
+    call take_times(self, row)
+    call self%pieces%begin_part(self%tracked, row, rate, events)
+  end subroutine begin_part
+
+  !> Take a row at a given time, or at a point of a part.
+  pure subroutine take_row(self, k, row)
+    class(quantity_record_type), intent(inout) :: self  !< the record
+    integer, intent(in) :: k                            !< number of the point; 0: the time is given
+    real(wp), intent(in) :: row(:)                      !< numbers of the row, time first
+
+    call take_times(self, row)
+    if (k > 0) call self%pieces%take_point(self%tracked, k, row)
+  end subroutine take_row
+
+  !> End a part, and begin the next one with its last row.
+  pure subroutine close_part(self, row, part, jump, events)
+    class(quantity_record_type), intent(inout) :: self  !< the record
+    real(wp), intent(in) :: row(:)                      !< numbers at its end, time first
+    type(smooth_piece_type), intent(in) :: part         !< the part
+    integer, intent(in) :: jump                         !< lowest derivative of positions that jumps within it; 3: none
+    type(motion_events_type), intent(in) :: events      !< of the motion so far
+
+    call take_times(self, row)
+    call self%pieces%close_part(self%tracked, row, part, jump, events)
+  end subroutine close_part
+
+  !> Let the output that comes next end a part, or none.
+  pure subroutine leave_open(self, parts)
+    class(quantity_record_type), intent(inout) :: self                    !< the record
+    type(smooth_piece_type), allocatable, intent(inout) :: parts(:)       !< one, or none
+
+    call self%pieces%leave_open(parts)
+  end subroutine leave_open
 
   !> Take the row of an output.
   subroutine take_output(self, model, row, events)

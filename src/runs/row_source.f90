@@ -1,9 +1,9 @@
 !> Rows of results from a simulation: a row of numbers for each output time.
 module mech9_row_source
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, exit_data
-  use mech9_text, only: string_type, texts_of_one_length
-  use mech9_model, only: model_type
+  use mech9_error, only: error_type
+  use mech9_text, only: string_type
+  use mech9_failure_units, only: tell_in_units
   use mech9_variable_model, only: variable_model_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -12,8 +12,9 @@ module mech9_row_source
   use mech9_tangent, only: tangent_type, find_tangent
   use mech9_smooth_pieces, only: have_joints
   use mech9_sensitivity, only: sensitivity_type, find_waiting
-  use mech9_columns, only: columns_type, kinematic_columns
-  use mech9_contact_columns, only: append_contacts, fill_contacts
+  use mech9_columns, only: columns_type
+  use mech9_run_columns, only: find_columns, find_section
+  use mech9_contact_columns, only: fill_contacts
   use mech9_result_units, only: name_parameters
   use mech9_applied_forces, only: applied_forces_type
   use mech9_touching_forces, only: touching_forces_type
@@ -24,11 +25,12 @@ module mech9_row_source
   use mech9_impact_record, only: impact_record_type, new_impact_record
   use mech9_varied_record, only: varied_record_type
   use mech9_quantity_record, only: quantity_record_type
-  use mech9_missing_column, only: find_remedy
-  use mech9_section_record, only: section_record_type, row_filler_type, new_section_record
+  use mech9_piece_walk, only: piece_walk_type, walk_done, walk_look, walk_stride, walk_leave, walk_pass
+  use mech9_smooth_pieces, only: smooth_piece_type
+  use mech9_section_record, only: section_record_type, row_filler_type
   implicit none
   private
-  public :: row_source_type, new_row_source, find_columns, find_section
+  public :: row_source_type, new_row_source
 
   type, extends(row_filler_type) :: row_source_type
     class(simulation_type), pointer, private :: simulation => null()   !< not owned
@@ -51,6 +53,7 @@ module mech9_row_source
     integer, private :: visited = 0                !< times after the last output that were visited
     real(wp), private :: last_output = 0.0_wp      !< time of the output that was reached last [s]
     real(wp), allocatable, private :: between(:, :)      !< (width,batch) rows between two outputs
+    type(piece_walk_type), private :: walk               !< the way of quantities through a motion with events
     integer, allocatable, private :: wanted(:)           !< columns whose derivatives are wanted at outputs
     integer, allocatable, private :: wanted_between(:)   !< columns whose derivatives quantities need between outputs
   contains
@@ -84,31 +87,6 @@ contains
       allocate (simulation%impacts, source=impacts)
     end associate
   end subroutine new_row_source
-
-  !> The columns of a run. They are known before the mechanism is assembled.
-  subroutine find_columns(model, with_energies, with_error, columns, forces, links)
-    type(model_type), intent(in) :: model             !< the model
-    logical, intent(in) :: with_energies              !< the energies are recorded
-    logical, intent(in) :: with_error                 !< an estimated error is recorded
-    type(columns_type), intent(out) :: columns        !< all but sensitivities
-    type(force_record_type), intent(out) :: forces    !< computes the forces that are recorded
-    type(link_record_type), intent(out) :: links      !< computes the motion of links that is recorded
-
-    columns = kinematic_columns(model%mechanism, model%request%output)
-    call forces%begin(model, columns)
-    call columns%append_motors(model%mechanism)
-    if (with_energies) call columns%append_energies()
-    call forces%append_magnitudes(model, columns)
-    call links%begin(model%mechanism, model%request%output, columns)
-    call columns%append_stops(model%mechanism)
-    if (model%mechanism%has_frictions() .and. (model%request%output%with_forces() .or. .not. model%is_driven())) &
-      call columns%append_frictions(model%mechanism, heats=.not. model%is_driven())
-    call append_contacts(columns, model%mechanism)
-    call columns%append_in('closure', 'm', 'largest error of a closed chain')
-    if (model%request%output%conditioning) call columns%append('conditioning', '1', 'least singular value of the worst chains')
-    if (with_error) call columns%append('error', model%mechanism%units%angle_name//','//trim(model%mechanism%units%length_name), &
-                                        'estimated error of the coordinates and points')
-  end subroutine find_columns
 
   !> Add the derivatives of the motion by the parameters of the model, after all other columns: those of the results, or, where the
   !> gradients of quantities alone are requested, those that no file gets. Fails where they do not exist.
@@ -158,6 +136,7 @@ contains
     call self%quantities%begin(self%simulation%model, self%columns, err)
     if (allocated(err)) return
     call self%quantities%begin_pieces(self%simulation%model, self%tangents)
+    self%walk%is_needed = self%simulation%may_jump() .and. self%quantities%has_parts()
     allocate (self%between(self%columns%width(), batch_size), source=0.0_wp)
     associate (needed => self%quantities%columns_with_gradients())
       self%wanted_between = pack(needed, needed <= self%columns%motion)
@@ -174,45 +153,26 @@ contains
     call find_section(self%simulation%model, self%columns, self%simulation%with_error, self%section, err)
   end subroutine begin_section
 
-  !> The record of the section that a model requests, with the columns of its run. Fails with exit_data where the column of its value is
-  !> not recorded.
-  subroutine find_section(model, columns, with_error, record, err)
-    type(model_type), intent(in) :: model                  !< the model
-    type(columns_type), intent(in) :: columns              !< those of its run
-    logical, intent(in) :: with_error                      !< an estimated error is the last one before derivatives
-    class(section_record_type), allocatable, intent(out) :: record   !< with its headings; without points
-    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
-    type(section_record_type), allocatable :: made
-    character(len=:), allocatable :: remedy, names(:), units(:)
-    integer :: n
-    logical :: found
-
-    ! an estimated error is known at outputs alone
-    n = columns%count - columns%sensitivities - merge(1, 0, with_error)
-    call texts_of_one_length(columns%names(:n), names)
-    call texts_of_one_length(columns%units(:n), units)
-    allocate (made)
-    call new_section_record(model, names, units, columns%motion, made, found)
-    call move_alloc(made, record)
-    if (found) return
-    call find_remedy(model%request%section%column, model, columns, remedy)
-    call raise(err, exit_data, 'the section is by column '''//model%request%section%column//''', which is not recorded'//remedy, &
-               model%request%section%place)
-  end subroutine find_section
-
-  !> Add the points of the section up to a time.
-  subroutine go_on_with_section(self, t, err)
+  !> Add the points of the section up to a time, or make one stride towards it.
+  subroutine go_on_with_section(self, t, err, at_joint)
     type(row_source_type), intent(inout), target :: self      !< the row source
     real(wp), intent(in) :: t                                 !< the time [s]
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
+    logical, intent(out), optional :: at_joint                !< present: make one stride; rates may jump at its end
     class(section_record_type), allocatable :: section
     class(simulation_type), pointer :: simulation
+    real(wp) :: from, to
 
+    if (present(at_joint) .and. .not. allocated(self%section)) then
+      to = self%simulation%end_of_stride(t)
+      call self%simulation%stride(t, from, to, at_joint, err)
+      call tell_in_units(err, self%simulation%model%mechanism)
+    end if
     if (.not. allocated(self%section)) return
     ! the section and who fills its rows are two
     call move_alloc(self%section, section)
     simulation => self%simulation
-    call section%go_on(simulation, self, t, err)
+    call section%go_on(simulation, self, t, err, at_joint)
     call move_alloc(section, self%section)
   end subroutine go_on_with_section
 
@@ -228,7 +188,11 @@ contains
     type(error_type), allocatable :: earlier
 
     if (self%simulation%started) then
-      if (.not. self%quantities%is_empty()) call visit_between(self, t, rows, count, err)
+      if (self%walk%is_needed) then
+        call visit_parts(self, t, err)
+      else if (.not. self%quantities%is_empty()) then
+        call visit_between(self, t, rows, count, err)
+      end if
       if (.not. allocated(err)) call go_on_with_section(self, t, err)
       if (.not. allocated(err)) call self%simulation%advance(t, err)
     else if (associated(self%interruption)) then
@@ -243,6 +207,7 @@ contains
     if (.not. allocated(err)) then
       self%last_output = t
       self%visited = 0
+      call self%walk%reach_output()
       if (.not. allocated(self%sensitivity) .and. self%quantities%is_empty()) then
         count = count + 1
         return
@@ -332,6 +297,83 @@ contains
       if (allocated(err)) return
     end do
   end subroutine visit_between
+
+  !> Visit the times before an output at which quantities need rows in a motion with events: no row waits for its derivatives.
+  subroutine visit_parts(self, t, err)
+    type(row_source_type), intent(inout), target :: self      !< the row source
+    real(wp), intent(in) :: t                                 !< time of the output [s]
+    type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
+    type(smooth_piece_type), allocatable :: parts(:)
+    integer :: action
+    logical :: at_joint
+
+    do
+      call self%walk%choose(self%simulation%model, self%quantities, [self%last_output, t], &
+                            self%simulation%end_of_stride(self%last_output), self%simulation%events%count, action)
+      select case (action)
+      case (walk_stride)
+        call go_on_with_section(self, t, err, at_joint)
+        if (.not. allocated(err)) call self%walk%note_stride(self%simulation%end_of_stride(self%last_output), at_joint, &
+                                                             self%simulation%events%count)
+      case (walk_leave)
+        call self%simulation%leave_joint(err)
+        if (.not. allocated(err)) call self%walk%note_leaving(self%simulation%events%count)
+      case (walk_look)
+        call self%simulation%visit(self%walk%time, err)
+        if (.not. allocated(err)) call fill_between(self, 1, err)
+        if (.not. allocated(err)) call self%walk%take(self%quantities, self%between(:, 1), self%simulation%events)
+      case (walk_pass)
+        call pass_event(self, err)
+      case (walk_done)
+        exit
+      end select
+      if (allocated(err)) return
+    end do
+    call self%walk%open_part(parts)
+    call self%quantities%leave_open(parts)
+  end subroutine visit_parts
+
+  !> Take rows on both sides of the event at which the motion stands.
+  subroutine pass_event(self, err)
+    type(row_source_type), intent(inout) :: self              !< the row source
+    type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
+    type(smooth_piece_type) :: part
+    integer :: jump
+
+    associate (simulation => self%simulation, t => self%walk%time, before => self%between(:, 1), behind => self%between(:, 2))
+      call simulation%look_at(t, err)
+      if (.not. allocated(err)) call simulation%note_numbers()
+      if (.not. allocated(err)) call fill_between(self, 1, err)
+      if (allocated(err)) return
+      call self%walk%part_before([(0.0_wp, jump=1, size(self%quantities%gradient, 1))], part)
+      jump = self%quantities%first_jump(part, simulation%events)
+      call go_on_with_section(self, t, err)
+      if (.not. allocated(err)) call simulation%leave_joint(err)
+      if (.not. allocated(err)) call simulation%look_at(t, err)
+      if (.not. allocated(err)) call simulation%note_numbers()
+      if (.not. allocated(err)) call fill_between(self, 2, err)
+      if (allocated(err)) return
+      if (allocated(simulation%events%time_rates)) part%to_rate = simulation%events%time_rates
+      call self%quantities%close_part(before, part, jump, simulation%events)
+      call self%quantities%begin_part(behind, part%to_rate, simulation%events)
+      call self%walk%note_passing(simulation%events%count)
+      call self%walk%part_behind(part%to_rate)
+    end associate
+  end subroutine pass_event
+
+  !> Fill a row between two outputs with the numbers of the present position, and with its derivatives where quantities need them.
+  subroutine fill_between(self, place, err)
+    type(row_source_type), intent(inout) :: self              !< the row source; no row waits
+    integer, intent(in) :: place                              !< number of the row
+    type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
+    integer :: good
+
+    call fill_row(self, self%between(:, place), err)
+    if (allocated(err) .or. .not. allocated(self%sensitivity)) return
+    call find_waiting(self%simulation%model, self%sensitivity, good, err)
+    if (.not. allocated(err)) call self%columns%fill_sensitivities(self%sensitivity%changes, 1, 1, self%wanted_between, &
+                                                                   self%between(:, place:place))
+  end subroutine fill_between
 
   !> Let a row wait for its derivatives, until enough of them wait. Rows without derivatives do not wait.
   subroutine defer(self, is_output, t, rows, count, err)

@@ -47,6 +47,7 @@ module mech9_free_simulation
     procedure :: stride
     procedure :: end_of_stride
     procedure :: leave_joint
+    procedure :: may_jump
     procedure :: look_at
     procedure :: present
     procedure :: present_for_forces
@@ -270,6 +271,14 @@ contains
     if (self%motion%system%interval%is_end(self%motion%t)) call pass_event(self, .false., err)
     if (.not. allocated(err)) call self%stand_at_step(err)
   end subroutine leave_joint
+
+  !> Whether stops, contacts or frictions may let rates or accelerations jump.
+  pure logical function may_jump(self)
+    class(free_simulation_type), intent(in) :: self   !< the simulation
+
+    may_jump = self%model%mechanism%has_contacts() .or. self%model%mechanism%has_frictions() .or. &
+               size(self%model%mechanism%stops) > 0
+  end function may_jump
 
   !> Stand at a time within the last step, before what ended it.
   subroutine look_at(self, t, err)

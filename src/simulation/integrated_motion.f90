@@ -26,7 +26,7 @@ module mech9_integrated_motion
   use mech9_friction_events, only: choose_modes, fail_undecided
   use mech9_held_coordinates, only: choose_held, hold_by_drives
   use mech9_motion_event, only: motion_events_type
-  use mech9_event_variation, only: event_variation_type, meet_rubbing
+  use mech9_event_variation, only: event_variation_type, meet_rubbing, end_passage
   use mech9_varied_impact, only: impact_type
   use mech9_impact_watcher, only: impact_watcher_type
   use mech9_side_steps, only: side_steps_type, begin_integration
@@ -419,7 +419,7 @@ contains
     end if
     if (allocated(self%passage) .and. at_start .and. .not. allocated(err)) &
       call self%passage%check_start(self%system, self%contacts%ends, err)
-    if (allocated(self%passage)) deallocate (self%passage)
+    if (.not. allocated(err)) call end_passage(self%passage, at_start, events)
   end subroutine meet_events
 
   !> Begin with the derivatives at an event, if any are integrated. Before an impact the coordinates that stops and frictions hold are

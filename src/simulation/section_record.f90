@@ -183,17 +183,26 @@ contains
   end function derivative_of
 
   !> Go on to a time, by strides that may go beyond it, and add the points up to there. The motion stands anywhere afterwards, at this time
-  !> or within its last stride. A failure with exit_interrupted may be followed by another call.
-  subroutine go_on(self, simulation, filler, t, err)
+  !> or within its last stride. A failure with exit_interrupted may be followed by another call. With `at_joint` one stride is made towards a
+  !> time that the motion has not reached, and the points up to its start are added.
+  subroutine go_on(self, simulation, filler, t, err, at_joint)
     class(section_record_type), intent(inout) :: self                !< the record
     class(simulation_type), intent(inout), target :: simulation      !< the motion, started
     class(row_filler_type), intent(inout), target :: filler          !< fills rows by its present position
     real(wp), intent(in) :: t                                        !< time to go to [s]
     type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
+    logical, intent(out), optional :: at_joint                       !< rates may jump at the end of the stride
     type(watched_motion_type) :: watched
+    real(wp) :: from, to
 
     if (self%wanted%period > 0.0_wp) then
-      call self%take_periods(simulation, filler, t, err)
+      to = t
+      if (present(at_joint)) to = simulation%end_of_stride(t)
+      call self%take_periods(simulation, filler, to, err)
+      if (present(at_joint) .and. .not. allocated(err)) then
+        call simulation%stride(t, from, to, at_joint, err)
+        call tell_in_units(err, simulation%model%mechanism)
+      end if
       return
     end if
     watched%simulation => simulation
@@ -220,6 +229,9 @@ contains
       if (self%next <= size(self%passings) .or. (self%last%t - t)*self%direction >= 0.0_wp) return
       if (self%at_joint) call self%pass_jump(watched, err)
       if (.not. allocated(err)) call make_stride(self, simulation, t, err)
+      if (.not. present(at_joint)) cycle
+      at_joint = self%at_joint
+      return
     end do
   end subroutine go_on
 

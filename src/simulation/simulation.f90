@@ -113,6 +113,7 @@ module mech9_simulation
     procedure :: stride => stride_at_once
     procedure :: end_of_stride => same_end
     procedure :: leave_joint => leave_nothing
+    procedure :: may_jump => never_jumps
     procedure :: look_at
     procedure :: note_numbers
     procedure :: statistics
@@ -279,6 +280,13 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
 
   end subroutine leave_nothing
+
+  !> Whether rates or accelerations may jump at times that are not known before. They do not unless a simulation says so.
+  pure logical function never_jumps(self) result(jumps)
+    class(simulation_type), intent(in) :: self   !< the simulation
+
+    jumps = .false.
+  end function never_jumps
 
   !> Stand at a time within the last stride, before what ended it.
   subroutine look_at(self, t, err)

@@ -7,7 +7,7 @@ module mech9_sensitivity_words
   use mech9_force_gradient_failures, only: failure_jumping_force
   use mech9_integration_failures, only: failure_jump_sensitivity
   use mech9_event_failures, only: failure_event_sensitivity, cause_grazing, cause_several_impacts, cause_start_on_stop, &
-    cause_drive_jumps, cause_followed, cause_breaks_loose, cause_held_hit, cause_contact_loose, &
+    cause_drive_jumps, cause_breaks_loose, cause_held_hit, cause_contact_loose, &
     cause_contact_rest, cause_rubbing_impact, cause_slip_at_rest
   use mech9_simulation_failures, only: failure_angles_sensitivity, failure_friction_sensitivity
   use mech9_reaction_failures, only: failure_shared_force
@@ -89,9 +89,6 @@ contains
       text = place//' begins to act without a slip, and parameters change its slip'
     case (cause_drive_jumps)
       text = 'the rate of a drive jumps while a stop or friction holds a coordinate'
-    case (cause_followed)
-      text = 'columns may jump that quantities follow between outputs (give quantities of positions by mean, rms or integral, '// &
-             'or take ''start'', ''end'' or ''at'')'
     case (cause_breaks_loose)
       text = 'the pair of friction '//to_text(failure%number)//' begins to slip, its coefficient at rest is above that of '// &
              'sliding, and other pairs slip with it, or its bound is not met at a known rate (give both coefficients the same '// &

@@ -81,6 +81,27 @@ def against_differences(checks, program, folder, text, columns, end, intervals, 
     return report
 
 
+def quantities_against_differences(checks, program, folder, text, takes, end, intervals, step=1e-5, tol=5e-6):
+    """Derivatives of quantities, each a column and what is taken of it, against differences of fourth order, as above."""
+    asked = ''.join(f"&quantity name='n{i}', of='{take.split()[0]}', take='{take.split()[1]}' /\n" for i, take in enumerate(takes))
+    _, report, _ = go(program, folder, text + asked + '&output gradients=.true., energies=.true. /\n' + TIGHT, end=end, intervals=intervals)
+    plain = re.sub('&parameter.*\n', '', text) + asked + '&output energies=.true. /\n' + TIGHT
+    for name, target in re.findall(r"&parameter name='(\w+)', sets='([^']+)'", text):
+        near = {}
+        for i in (-2, -1, 1, 2):
+            _, other, _ = go(program, folder, plain, '--set', f'{target}={number_of(text, target) + i * step!r}', end=end, intervals=intervals)
+            checks.true(kinds(other)[:6] == kinds(report)[:6], 'the same events happen', name)
+            near[i] = [one['value'] for one in other['quantities']]
+        for i, take in enumerate(takes):
+            slope = (8 * (near[1][i] - near[-1][i]) - near[2][i] + near[-2][i]) / (12 * step)
+            found = {one['parameter']: one['value'] for one in report['quantities'][i]['gradient']}[name]
+            checks.true(found is not None, f'{take} by {name}', 'is not known')
+            # tolerance: as above
+            if found is not None:
+                checks.near(found, slope, tol, f'{take} by {name}', scale=max(1.0, abs(slope)))
+    return report
+
+
 def number_of(text, target):
     """A number of a data file by its name."""
     group, number, name, place = re.match(r'(\w+)\((\d+)\)\.(\w+)(?:\((\d+)\))?', target).groups()

@@ -5,7 +5,7 @@ module mech9_event_failures
   public :: failure_stop_violated, failure_event_sensitivity, failure_stop_start, failure_singular_contact, &
     failure_paradox, failure_shared_sticking, failure_undecided_friction, failure_contact_start, &
     failure_contact_violated, failure_undecided_contact, failure_contact_behind, last_event_failure
-  public :: cause_grazing, cause_several_impacts, cause_start_on_stop, cause_no_motion, cause_drive_jumps, cause_followed, &
+  public :: cause_grazing, cause_several_impacts, cause_start_on_stop, cause_no_motion, cause_drive_jumps, &
     cause_breaks_loose, cause_held_hit, cause_contact_loose, cause_contact_rest, cause_rubbing_impact, cause_slip_at_rest
 
   !> Drives move or press a coordinate beyond a rigid stop: number (of the stop), coordinates, values (the limit, the rate), name (unit
@@ -15,13 +15,13 @@ module mech9_event_failures
   !> where that is the cause), name (stop or contact), t.
   integer, parameter :: failure_event_sensitivity = 1402
   !> The causes: a stop is met without a rate; two impacts at once; a start on a stop that parameters move; a pair comes to rest without
-  !> an acceleration; the rate of a drive jumps; quantities follow a column that may jump; a pair begins to slip whose coefficient at
+  !> an acceleration; the rate of a drive jumps; a pair begins to slip whose coefficient at
   !> rest is above that of sliding; drives hit a contact that is closed; a contact begins to slide whose coefficient at rest is above that of
   !> sliding; one comes to rest without an acceleration; friction just stops the slip of one that is hit; one begins to
   !> act without a slip, which parameters change.
   integer, parameter :: cause_grazing = 1, cause_several_impacts = 2, cause_start_on_stop = 3, cause_no_motion = 4, &
-    cause_drive_jumps = 5, cause_followed = 6, cause_breaks_loose = 7, cause_held_hit = 8, cause_contact_loose = 9, &
-    cause_contact_rest = 10, cause_rubbing_impact = 11, cause_slip_at_rest = 12
+    cause_drive_jumps = 5, cause_breaks_loose = 6, cause_held_hit = 7, cause_contact_loose = 8, cause_contact_rest = 9, &
+    cause_rubbing_impact = 10, cause_slip_at_rest = 11
   !> The start lies behind a rigid stop: number (of the stop), coordinates, values (the coordinate, its limit), name (of their unit).
   integer, parameter :: failure_stop_start = 1403
   !> The equations of motion are singular where a stop is met: coordinates (without inertia), t.

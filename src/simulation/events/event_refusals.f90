@@ -8,7 +8,7 @@ module mech9_event_refusals
   use mech9_stop_contacts, only: stop_contact_type
   implicit none
   private
-  public :: refuse, refuse_at, follows_jumps, hits_others
+  public :: refuse, refuse_at, hits_others
 
 contains
 
@@ -42,40 +42,6 @@ contains
       call add_place(err, place=system%model%mechanism%contacts(end%contact)%place)
     end if
   end subroutine refuse_at
-
-  !> Whether derivatives are wanted of quantities that an event disturbs between outputs: sums of columns that jump, whose time it moves,
-  !> and extremes of columns that jump or have kinks. Positions are smooth but for kinks at impacts.
-  pure logical function follows_jumps(system, rates_jump)
-    class(motion_system_type), intent(in) :: system        !< the system
-    logical, intent(in) :: rates_jump                      !< rates jump, and not accelerations alone
-    logical :: sums
-    integer :: i
-
-    follows_jumps = .false.
-    associate (request => system%model%request)
-      if (.not. (request%output%gradients .and. allocated(request%quantities))) return
-      do i = 1, size(request%quantities)
-        associate (quantity => request%quantities(i))
-          if (any(quantity%take == [character(len=5) :: 'start', 'end', 'at'])) cycle
-          sums = any(quantity%take == [character(len=8) :: 'mean', 'rms', 'integral'])
-          if (is_position(quantity%column) .and. (sums .or. .not. rates_jump)) cycle
-          follows_jumps = .true.
-        end associate
-      end do
-    end associate
-  end function follows_jumps
-
-  !> Whether a column is a coordinate or a component of the place of a point.
-  pure logical function is_position(column)
-    character(len=*), intent(in) :: column   !< its heading
-    integer :: n
-
-    n = len(column)
-    is_position = .false.
-    if (n < 2) return
-    is_position = column(1:1) == 'q' .and. verify(column(2:), '0123456789') == 0
-    if (index(column, '.pole.') == 0) is_position = is_position .or. any(column(n - 1:) == ['.x', '.y', '.z'])
-  end function is_position
 
   !> Whether a rigid contact that is open is hit beside those that have impulses, and needs none because these imply it.
   pure logical function hits_others(contacts, ends, gap_motion, length) result(hits)

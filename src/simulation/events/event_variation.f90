@@ -8,10 +8,11 @@
 !> Bifurcations of Non-Smooth Mechanical Systems, Springer 2004; with parameters I. A. Hiskens and M. A. Pai, Trajectory Sensitivity
 !> Analysis of Hybrid Systems, IEEE Trans. Circuits Syst. I 47 (2000).
 module mech9_event_variation
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_event_failures, only: cause_grazing, cause_several_impacts, cause_start_on_stop, cause_no_motion, &
-    cause_drive_jumps, cause_followed, cause_breaks_loose, cause_held_hit, cause_contact_loose, &
+    cause_drive_jumps, cause_breaks_loose, cause_held_hit, cause_contact_loose, &
     cause_contact_rest, cause_slip_at_rest
   use mech9_event_tolerances, only: grazing, least_rebound
   use mech9_state, only: state_type, copy_state
@@ -27,17 +28,19 @@ module mech9_event_variation
   use mech9_varied_contacts, only: contact_variation_type, vary_contact, varied_numbers
   use mech9_stop_contacts, only: stop_contact_type, gap_motion, gap_acceleration
   use mech9_release_rate, only: find_use_rate
-  use mech9_event_refusals, only: refuse, refuse_at, follows_jumps, hits_others
+  use mech9_event_refusals, only: refuse, refuse_at, hits_others
   use mech9_contact_equations, only: contact_equations_type, find_contact_equations
   use mech9_held_directions, only: hold_directions
+  use mech9_motion_event, only: motion_events_type
   use mech9_varied_impact, only: impact_type, add_varied_impact, meet_targets
   implicit none
   private
-  public :: event_variation_type, meet_rubbing
+  public :: event_variation_type, meet_rubbing, end_passage
 
   !> The derivatives at one event: at first at its time held fixed, then carried along with the time of the event.
   type :: event_variation_type
     real(wp), allocatable :: time(:)          !< (P) derivatives of the time of the event [s]
+    logical :: knows_time = .false.           !< these are known; else they are zero, and nothing jumps
     real(wp), allocatable :: q(:, :, :)       !< (P,0:1,M) derivatives of all coordinates and their rates
     real(wp), allocatable :: motors(:, :)     !< (P,motors) those of the states of motors
     real(wp), allocatable :: dq(:)            !< (M) rates of all coordinates before the event [rad/s, m/s]
@@ -195,6 +198,7 @@ contains
     integer :: p
 
     self%time = time
+    self%knows_time = .true.
     do p = 1, size(time)
       self%q(p, 0, :) = self%q(p, 0, :) + time(p)*self%dq
       self%q(p, 1, :) = self%q(p, 1, :) + time(p)*self%ddq
@@ -233,15 +237,11 @@ contains
         if (.not. any(system%friction%modes%group == group .and. abs(frictions%static - frictions%dynamic) > 0.0_wp)) return
         if (count(system%friction%modes%group == group) > 1) then
           call refuse(system, cause_breaks_loose, number, err)
-        else if (follows_jumps(system, .false.)) then
-          call refuse(system, cause_followed, 0, err)
         else
           call break_loose(self, system, number, err)
         end if
       else if (.not. abs(self%ddq(k)) > 0.0_wp) then
         call refuse(system, cause_no_motion, number, err)
-      else if (follows_jumps(system, .false.)) then
-        call refuse(system, cause_followed, 0, err)
       else
         call self%set_time(-self%q(:, 1, k)/self%ddq(k))
       end if
@@ -265,8 +265,6 @@ contains
       acceleration = dot_product(direction, acceleration_of_contact(contact, system%plan, system%state))
       if (.not. acceleration < 0.0_wp) then
         call refuse_at(system, cause_contact_rest, end, err)
-      else if (follows_jumps(system, .false.)) then
-        call refuse(system, cause_followed, 0, err)
       else
         call self%set_time(-self%gaps(:, 2, end%contact)/acceleration)
       end if
@@ -329,10 +327,6 @@ contains
     integer :: i
 
     associate (ends => contacts(impact%ends))
-      if (follows_jumps(system, .true.)) then
-        call refuse(system, cause_followed, 0, err)
-        return
-      end if
       if (count(.not. ends%held) > 1 .or. hits_others(contacts, impact%ends, self%gap_motion, system%plan%length)) then
         call refuse_at(system, cause_several_impacts, ends(findloc(ends%held, .false., dim=1)), err)
         return
@@ -451,6 +445,19 @@ contains
       motors(:, i) = motors(:, i) - self%time*state%motor_rate(i)
     end do
   end function motors_behind
+
+  !> End with an event, and keep the derivatives of its time.
+  pure subroutine end_passage(passage, at_start, events)
+    type(event_variation_type), allocatable, intent(inout) :: passage   !< the derivatives at the event; then not allocated
+    logical, intent(in) :: at_start                        !< the motion begins with the event
+    type(motion_events_type), intent(inout) :: events      !< gets the derivatives
+
+    if (.not. allocated(passage)) return
+    if (allocated(events%time_rates)) deallocate (events%time_rates)
+    events%time_rates = passage%time
+    if (.not. (passage%knows_time .or. at_start)) events%time_rates = ieee_value(0.0_wp, ieee_quiet_nan)
+    deallocate (passage)
+  end subroutine end_passage
 
   !> Fail where a parameter moves a start away from a stop or a contact that holds it there, or behind it.
   subroutine check_start(self, system, ends, err)

@@ -26,6 +26,8 @@ module mech9_motion_event
     type(motion_event_type), allocatable :: items(:)    !< the events, then room for more; not allocated: there was none yet
     real(wp), private :: t_met = 0.0_wp                 !< time of the last meeting of contacts and frictions [s]
     integer, private :: meetings = 0                    !< how many there were before it at this time
+    real(wp), allocatable :: time_rates(:)              !< (P) derivatives of the time of the last event by the parameters; NaN: not
+                                                        !< known; not allocated: none are integrated
   contains
     procedure :: add
     procedure :: judge_progress

@@ -17,6 +17,8 @@ module mech9_quantity_pieces
   type :: quantity_pieces_type
     type(chebyshev_type) :: rule                             !< points in a piece
     logical, private :: follows = .false.                    !< a quantity is followed between outputs
+    logical, private :: inside = .false.                     !< values between outputs are needed
+    integer, private :: events = 0                           !< how many there were where the present piece begins
     logical, private :: is_started = .false.                 !< an output was taken
     real(wp), private :: previous = 0.0_wp                   !< time of the output that was taken last [s]
     type(smooth_pieces_type), private :: visited             !< up to the output to which the motion goes
@@ -30,6 +32,15 @@ module mech9_quantity_pieces
     procedure :: times_before
     procedure :: take_between
     procedure :: take_output
+    procedure :: is_followed
+    procedure :: needs_inside
+    procedure :: divide
+    procedure :: point_in
+    procedure :: first_jump
+    procedure :: begin_part
+    procedure :: take_point
+    procedure :: close_part
+    procedure :: leave_open
   end type quantity_pieces_type
 
 contains
@@ -46,6 +57,7 @@ contains
     call new_chebyshev(points_between, self%rule)
     allocate (self%values(points_between, size(tracked)), self%changes(n_parameters, points_between, size(tracked)), source=0.0_wp)
     self%follows = any([(tracked(i)%follows(), i=1, size(tracked))])
+    self%inside = any([(tracked(i)%needs_piece(), i=1, size(tracked))])
     if (allocated(tangents)) then
       call self%taken%begin(model, n_parameters, tangents)
     else
@@ -56,30 +68,63 @@ contains
 
   !> The times between the output before and the next one at which rows are needed, in their order. To be called for all outputs
   !> behind the start.
-  subroutine times_before(self, model, tracked, previous, t, times)
+  subroutine times_before(self, model, previous, t, times)
     class(quantity_pieces_type), intent(inout) :: self           !< the pieces
     type(model_type), intent(in) :: model                        !< the model
-    type(tracked_quantity_type), intent(in) :: tracked(:)        !< the quantities
     real(wp), intent(in) :: previous                             !< time of the output before [s]
     real(wp), intent(in) :: t                                    !< time of the next output [s]
     real(wp), allocatable, intent(out) :: times(:)               !< between the two outputs [s]
     type(smooth_piece_type), allocatable :: list(:)
     real(wp) :: points(points_between)
-    logical :: inside
     integer :: i, last
 
     allocate (times(0))
     if (.not. self%follows) return
     call self%visited%divide(model, previous, t, list)
-    inside = any([(tracked(i)%needs_piece(), i=1, size(tracked))])
     last = points_between
     do i = 1, size(list)
       points = points_in(self, list(i))
       if (list(i)%from_joint) times = [times, points(1)]
-      if (inside) times = [times, points(2:last - 1)]
+      if (self%inside) times = [times, points(2:last - 1)]
       if (list(i)%to_joint) times = [times, points(last)]
     end do
   end subroutine times_before
+
+  !> Whether a quantity is followed between outputs.
+  pure logical function is_followed(self)
+    class(quantity_pieces_type), intent(in) :: self   !< the pieces
+
+    is_followed = self%follows
+  end function is_followed
+
+  !> Whether values between outputs are needed.
+  pure logical function needs_inside(self)
+    class(quantity_pieces_type), intent(in) :: self   !< the pieces
+
+    needs_inside = self%inside
+  end function needs_inside
+
+  !> The pieces between two outputs. To be called for all outputs behind the start, where the times before these are not asked for.
+  subroutine divide(self, model, previous, t, list)
+    class(quantity_pieces_type), intent(inout) :: self                !< the pieces
+    type(model_type), intent(in) :: model                             !< the model
+    real(wp), intent(in) :: previous                                  !< time of the output before [s]
+    real(wp), intent(in) :: t                                         !< time of the output [s]
+    type(smooth_piece_type), allocatable, intent(out) :: list(:)      !< in the order of time
+
+    call self%visited%divide(model, previous, t, list)
+  end subroutine divide
+
+  !> The time of a point in a piece.
+  pure real(wp) function point_in(self, piece, k) result(time)
+    class(quantity_pieces_type), intent(in) :: self     !< the pieces
+    type(smooth_piece_type), intent(in) :: piece        !< one of them
+    integer, intent(in) :: k                            !< number of the point
+    real(wp) :: times(points_between)
+
+    times = points_in(self, piece)
+    time = times(k)
+  end function point_in
 
   !> The times of the points in a piece, its ends included.
   pure function points_in(self, piece) result(times)
@@ -118,7 +163,7 @@ contains
     if (self%current > size(self%list)) return
     k = findloc(.not. abs(points_in(self, self%list(self%current)) - row(1)) > 0.0_wp, .true., dim=1)
     if (k == 1) then
-      call begin_piece(self, tracked, row, self%list(self%current)%from_rate)
+      call self%begin_part(tracked, row, self%list(self%current)%from_rate, events)
     else if (k == points_between) then
       call end_piece(self, tracked, row, events)
       self%current = self%current + 1
@@ -141,11 +186,10 @@ contains
       call find_pieces(self, model, row(1))
       if (self%current <= size(self%list)) then
         call end_piece(self, tracked, row, events)
-        call keep_values(self, tracked, 1, row)
       end if
       deallocate (self%list)
     else if (.not. self%taken%is_at_joint(row(1))) then
-      call begin_piece(self, tracked, row, no_joint)
+      call self%begin_part(tracked, row, no_joint, events)
     end if
     self%is_started = .true.
     self%previous = row(1)
@@ -185,14 +229,66 @@ contains
     type(tracked_quantity_type), intent(inout) :: tracked(:)  !< the quantities
     real(wp), intent(in) :: row(:)                            !< numbers at its end
     type(motion_events_type), intent(in) :: events            !< of the motion so far
-    integer :: i, jump
+
+    call self%close_part(tracked, row, self%list(self%current), self%first_jump(self%list(self%current), events), events)
+  end subroutine end_piece
+
+  !> The lowest derivative of positions that jumps within a piece, up to the present time: 1 rates, 2 accelerations, 3 none.
+  pure integer function first_jump(self, piece, events) result(jump)
+    class(quantity_pieces_type), intent(in) :: self           !< the pieces
+    type(smooth_piece_type), intent(in) :: piece              !< the present one
+    type(motion_events_type), intent(in) :: events            !< of the motion so far
+
+    jump = 3
+    if (events%count > self%events) jump = events%first_jump(piece%from, piece%to)
+  end function first_jump
+
+  !> Begin a part of a piece: at a joint of laws, or behind an event.
+  pure subroutine begin_part(self, tracked, row, rate, events)
+    class(quantity_pieces_type), intent(inout) :: self        !< the pieces
+    type(tracked_quantity_type), intent(inout) :: tracked(:)  !< the quantities
+    real(wp), intent(in) :: row(:)                            !< numbers at its beginning
+    real(wp), allocatable, intent(in) :: rate(:)              !< (P) derivatives of the time of the joint by the parameters
+    type(motion_events_type), intent(in) :: events            !< of the motion so far
+
+    self%events = events%count
+    call begin_piece(self, tracked, row, rate)
+  end subroutine begin_part
+
+  !> Take a point of a part.
+  pure subroutine take_point(self, tracked, k, row)
+    class(quantity_pieces_type), intent(inout) :: self      !< the pieces
+    type(tracked_quantity_type), intent(in) :: tracked(:)   !< the quantities
+    integer, intent(in) :: k                                !< number of the point
+    real(wp), intent(in) :: row(:)                          !< numbers of the row
+
+    call keep_values(self, tracked, k, row)
+  end subroutine take_point
+
+  !> End a part, and begin the next one with its last row.
+  pure subroutine close_part(self, tracked, row, part, jump, events)
+    class(quantity_pieces_type), intent(inout) :: self        !< the pieces
+    type(tracked_quantity_type), intent(inout) :: tracked(:)  !< the quantities
+    real(wp), intent(in) :: row(:)                            !< numbers at its end
+    type(smooth_piece_type), intent(in) :: part               !< the part
+    integer, intent(in) :: jump                               !< lowest derivative of positions that jumps within it; 3: none
+    type(motion_events_type), intent(in) :: events            !< of the motion so far
+    integer :: i
 
     call keep_values(self, tracked, points_between, row)
-    associate (piece => self%list(self%current))
-      jump = events%first_jump(piece%from, piece%to)
-      do i = 1, size(tracked)
-        call tracked(i)%end_piece(self%rule, piece, jump, row, self%values(:, i), self%changes(:, :, i))
-      end do
-    end associate
-  end subroutine end_piece
+    do i = 1, size(tracked)
+      call tracked(i)%end_piece(self%rule, part, jump, row, self%values(:, i), self%changes(:, :, i))
+    end do
+    call keep_values(self, tracked, 1, row)
+    self%events = events%count
+  end subroutine close_part
+
+  !> Let the output that comes next end a part, or none.
+  pure subroutine leave_open(self, parts)
+    class(quantity_pieces_type), intent(inout) :: self                    !< the pieces
+    type(smooth_piece_type), allocatable, intent(inout) :: parts(:)       !< one, or none
+
+    self%current = 1
+    call move_alloc(parts, self%list)
+  end subroutine leave_open
 end module mech9_quantity_pieces
