@@ -56,10 +56,12 @@ contains
     call given%run%source%forces%judge(given%model, given%run%motion%plan, given%run%motion%start)
     reported = .false.
     call given%run%source%begin_section(err)
-    if (allocated(given%run%source%section)) then
-      call check_section_plots(options, given, err, given%run%source%section%names)
-    else if (.not. allocated(err)) then
-      call check_section_plots(options, given, err)
+    if (.not. allocated(err)) then
+      if (allocated(given%run%source%section)) then
+        call check_section_plots(options, given, err, given%run%source%section%names)
+      else
+        call check_section_plots(options, given, err)
+      end if
     end if
     call given%fail(err)
     if (allocated(err)) return
