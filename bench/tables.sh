@@ -41,7 +41,7 @@ EOT
     NR == FNR { if ($1 == "four_bar") position = $3; next }
     $1 == "study" {
       each = 1e6 * $3 / $2 / 361
-      printf "| study of %d four-bars, 361 positions of each, the range of a coordinate | %.2f | %.3f µs a position, %.2f of the table above |\n", $2, $3,
+      printf "| study of %d four-bars, 361 positions of each, the range of a coordinate | %.3f | %.3f µs a position, %.2f of the table above |\n", $2, $3,
         each, each / position
     }
     $1 == "sensitivity0" { plain = $3; printf "| four-bar, %d positions to an HDF5 file | %.3f | %.2f µs a position |\n", $2, $3, 1e6 * $3 / $2 }
