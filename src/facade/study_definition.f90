@@ -84,7 +84,7 @@ contains
     case (value_integer)
       line = line//to_text(value%whole)
     case (value_real)
-      line = line//exact(value%number)
+      line = line//trim(exact(value%number))
     case (value_logical)
       line = line//merge('T', 'F', value%truth)
     case (value_text)
@@ -98,7 +98,7 @@ contains
   !> A number with as few digits as give it back.
   function exact(number) result(text)
     real(wp), intent(in) :: number   !< the number
-    character(len=:), allocatable :: text
+    character(len=40) :: text
     real(wp) :: again
     integer :: digits
 
@@ -117,6 +117,7 @@ contains
     character(len=:), allocatable, intent(out) :: words      !< a sentence, or empty
     character(len=*), intent(in) :: name_of_one              !< place of the first definition in words, as 'there'
     character(len=*), intent(in) :: name_of_other            !< place of the other one, as 'here'
+    character(len=:), allocatable :: line, other_line
     integer :: first, i
 
     words = ''
@@ -126,15 +127,17 @@ contains
       if (one(i:i) /= other(i:i)) exit
       if (one(i:i) == line_end) first = i + 1
     end do
-    words = name_of_one//' '//line_from(one, first, i)//', '//name_of_other//' '//line_from(other, first, i)
+    call take_line(one, first, i, line)
+    call take_line(other, first, i, other_line)
+    words = name_of_one//' '//line//', '//name_of_other//' '//other_line
   end subroutine tell_difference
 
-  !> The line of a text that begins at a place, in quotes; of a long line the letters around another place.
-  function line_from(text, first, middle) result(line)
+  !> Take the line of a text that begins at a place, in quotes; of a long line the letters around another place.
+  subroutine take_line(text, first, middle, line)
     character(len=*), intent(in) :: text                     !< of several lines
     integer, intent(in) :: first                             !< place of the first letter of the line
     integer, intent(in) :: middle                            !< place in the line, or after it
-    character(len=:), allocatable :: line
+    character(len=:), allocatable, intent(out) :: line       !< the line
     integer, parameter :: longest = 100
     integer :: from, to, last
 
@@ -148,7 +151,7 @@ contains
     if (from > first) line = '... '//line
     if (to < last) line = line//' ...'
     line = "'"//line//"'"
-  end function line_from
+  end subroutine take_line
 
   !> A digest of a text, of 16 hexadecimal digits.
   pure function digest_of(text) result(digest)
