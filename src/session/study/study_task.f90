@@ -151,7 +151,7 @@ contains
   subroutine print_notes(options, given)
     type(command_line_type), intent(in) :: options          !< the command line
     type(data_file_type), intent(in) :: given               !< the data file
-    integer :: part(2), cores
+    integer :: part(2), cores, borne
 
     part = options%part()
     if (given%model%request%output%compression > 0) &
@@ -161,7 +161,8 @@ contains
     if (options%number('threads', 1) > 1 .and. .not. has_threads()) &
       write (error_unit, '(a)') 'note: this program was built without threads; one core makes the runs'
     cores = threads_of_machine()
-    if (cores > 1 .and. threads_for(given%model) == 1 .and. .not. options%has('threads')) &
+    borne = threads_for(given%model)
+    if (cores > 1 .and. borne == 1 .and. .not. options%has('threads')) &
       write (error_unit, '(a)') 'note: one thread makes the runs, because procedures of a user may not bear several at a time; '// &
                                 '--threads N asks for more'
   end subroutine print_notes
