@@ -44,8 +44,8 @@ EOT
       printf "| study of %d four-bars, 361 positions of each, the range of a coordinate | %.3f | %.3f µs a position, %.2f of the table above |\n", $2, $3,
         each, each / position
     }
-    $1 == "sensitivity0" { plain = $3; printf "| four-bar, %d positions to an HDF5 file | %.3f | %.2f µs a position |\n", $2, $3, 1e6 * $3 / $2 }
-    $1 == "sensitivity10" {
+    $1 == "plain" { plain = $3; printf "| four-bar, %d positions to an HDF5 file | %.3f | %.2f µs a position |\n", $2, $3, 1e6 * $3 / $2 }
+    $1 == "sensitivity" {
       printf "| the same with derivatives of all columns by ten parameters | %.3f | %.2f µs a position, %.1f times as long |\n", $3, 1e6 * $3 / $2, $3 / plain
     }
     $1 == "timed_path" { printf "| search for eighteen timed points, %d starts | %.2f | %.1f ms a start |\n", $2, $3, 1e3 * $3 / $2 }
