@@ -5,8 +5,7 @@
 !> step shows where it may come near, also where it turns back within the step. What counts is the motion itself there.
 module mech9_event_passing
   use mech9_kinds, only: wp
-  use mech9_event_tolerances, only: touching
-  use mech9_simulation_tolerances, only: round_off_of_gaps
+  use mech9_event_tolerances, only: touching, round_off_of_gaps
   use mech9_error, only: error_type
   use mech9_hermite, only: hermite_type, build_hermite, cubic_between
   use mech9_integrated_motion, only: integrated_motion_type

@@ -2,7 +2,7 @@
 module mech9_event_search
   use mech9_kinds, only: wp
   use mech9_event_tolerances, only: round_off_of_impacts, limit_of_sticking, at_rest
-  use mech9_simulation_tolerances, only: round_off_of_gaps, shortest_step, least_motion
+  use mech9_simulation_tolerances, only: shortest_step, least_motion
   use mech9_error, only: error_type
   use mech9_limit_watch, only: find_excess
   use mech9_false_position, only: false_position_type, new_false_position
@@ -21,8 +21,6 @@ module mech9_event_search
   !> links is beyond its present mode, and the acceleration of a pair and of a contact that slip, along the slip.
   integer, parameter :: of_motor = 1, of_contact = 2, of_rate = 3, of_friction = 4, of_paradox = 5, of_rubbing = 6, of_turn = 7, &
                         of_rubbing_turn = 8
-  !> Gaps err by several times the round-off of one coordinate.
-  real(wp), parameter :: several = 8.0_wp
   !> Trials of the search for a time.
   integer, parameter :: most_trials = 100
 
@@ -122,8 +120,7 @@ contains
         gap = gap_motion(system%model%mechanism, system%plan, system%state, end)
         value = -gap(1)
         if (end%closed) value = -value
-        if (end%is_rigid) value = value - max(round_off_of_gaps*max(end%unit(system%plan), abs(end%limit)), &
-                                                 several*end%round_off(system%plan, system%state))
+        if (end%is_rigid) value = value - end%hidden_gap(system%plan, system%state)
       end if
     end associate
   end function passing_of_contact

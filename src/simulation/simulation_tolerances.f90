@@ -7,7 +7,7 @@ module mech9_simulation_tolerances
   private
   public :: largest_closure, hidden_part, doubtful_conditioning, regular_conditioning, refused_conditioning, locked, &
     locked_together, short_part, long_part, many_short, nearly_singular, surely_singular, least_part, nearly_locked, &
-    drawn_near_by, round_off_of_gaps, shortest_step, longest_stick, least_motion
+    drawn_near_by, shortest_step, longest_stick, least_motion
 
   ! The start.
 
@@ -62,9 +62,4 @@ module mech9_simulation_tolerances
   real(wp), parameter :: longest_stick = 0.005_wp
   !> A pair that drives alone move begins to move where it would come this far in the whole motion, in its unit.
   real(wp), parameter :: least_motion = 1.0e-9_wp
-
-  ! Stops.
-
-  !> Round-off of the gap to an end, in the unit of the coordinate or parts of the limit: round-off of positions of well conditioned chains.
-  real(wp), parameter :: round_off_of_gaps = 8.0_wp*epsilon(1.0_wp)
 end module mech9_simulation_tolerances

@@ -319,6 +319,16 @@ def test_rest_on_a_stop(checks, mech9d, tmp_path):
     checks.true('stop 1 opens' in said and table['q1'].max() > 0.1, 'it is lifted', said)
 
 
+def test_bouncing_ends_within_the_search(checks, mech9d, tmp_path):
+    """A slider that nothing drives bounces lower after each guess, until it rests: rebounds that round-off keeps alive must end."""
+    text = ("&structure cq=1 /\n&pair coordinate=1, links=1,2, kind='prismatic', axis=0,1,0 /\n&body link=2, mass=2 /\n"
+            '&gravity acceleration=0,-9.81,0 /\n&initial coordinate=1, position=1 /\n&stop coordinate=1, low=0, restitution=0.9 /\n'
+            '&solver relative_tolerance=1e-10, absolute_tolerance=1e-12 /\n&periodic period=0.1 /\n')
+    found, table, said = go(mech9d, tmp_path, text)
+    checks.equal((found['multipliers'], found['stability'], found['start']), ([[0, 0], [0, 0]], 'stable', [0]), 'it rests')
+    checks.true('equilibrium' in said and abs(table['q1']).max() == 0, 'on its stop', said)
+
+
 def after_a_period(state, force, frequency, coefficient):
     """State of a unit mass on a unit spring with dry friction after a period of its force, piece by piece in closed form."""
     x, v = state

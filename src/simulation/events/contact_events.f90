@@ -4,7 +4,8 @@
 !> flights last 2u/a, e 2u/a, e^2 2u/a, ..., together 2u/(a (1 - e)).
 module mech9_contact_events
   use mech9_kinds, only: wp
-  use mech9_event_tolerances, only: touching, drawn_behind_stop, jumped_behind, least_rebound, endless_part, pressing
+  use mech9_event_tolerances, only: touching, drawn_behind_stop, jumped_behind, least_rebound, hidden_rebound, endless_part, &
+    pressing
   use mech9_error, only: error_type, raise, exit_data, exit_singular
   use mech9_event_failures, only: failure_stop_start, failure_contact_start, failure_contact_behind
   use mech9_result_units, only: unit_of, unit_name
@@ -399,7 +400,7 @@ contains
           time = 2.0_wp*rates(i)/(-outcome%accelerations(i)*(1.0_wp - restitution(i)))
           height = -0.5_wp*rates(i)**2/outcome%accelerations(i)
           ! rebounds within the round-off of the gap are not impacts
-          if (height > 64.0_wp*max(spacing(ends(i)%limit), ends(i)%round_off(system%plan, system%state)) .and. &
+          if (height > hidden_rebound*ends(i)%hidden_gap(system%plan, system%state) .and. &
               (height > least_rebound*ends(i)%unit(system%plan) .or. time > endless_part*duration)) cycle
           ends_after(i) = time
           restitution(i) = 0.0_wp

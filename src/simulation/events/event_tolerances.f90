@@ -5,9 +5,9 @@ module mech9_event_tolerances
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: round_off_of_limit, touching, drawn_behind_stop, jumped_behind, round_off_of_impacts, least_rebound, endless_part, &
-    grazing, most_events, most_events_at_once, limit_of_sticking, at_rest, still, tied, round_off_of_sticking, beyond_all_bounds, &
-    pressing, known_use_rate
+  public :: round_off_of_limit, round_off_of_gaps, several_coordinates, touching, drawn_behind_stop, jumped_behind, &
+    round_off_of_impacts, least_rebound, hidden_rebound, endless_part, grazing, most_events, most_events_at_once, &
+    limit_of_sticking, at_rest, still, tied, round_off_of_sticking, beyond_all_bounds, pressing, known_use_rate
 
   ! Drives and outputs.
 
@@ -16,6 +16,12 @@ module mech9_event_tolerances
 
   ! Stops.
 
+  !> Round-off of the gap to an end, in the unit of the coordinate or parts of the limit: round-off of positions of well conditioned chains.
+  real(wp), parameter :: round_off_of_gaps = 8.0_wp*epsilon(1.0_wp)
+  !> Gaps err by so many times the round-off of one coordinate.
+  real(wp), parameter :: several_coordinates = 8.0_wp
+  !> Rebounds up to so many times the round-off of the gap are no impacts: each would gain as much rate as this round-off hides.
+  real(wp), parameter :: hidden_rebound = 64.0_wp
   !> An end of a stop touches where its coordinate is at most so far away or behind it, in its unit: a hundred times the round-off of
   !> closed positions, far below the tolerances of integration.
   real(wp), parameter :: touching = 1.0e-12_wp

@@ -4,6 +4,7 @@
 !> a force that leaves the gap no acceleration. A compliant one is a load; its contact begins and ends where its force is not smooth.
 module mech9_stop_contacts
   use mech9_kinds, only: wp
+  use mech9_event_tolerances, only: round_off_of_gaps, several_coordinates
   use mech9_contact, only: contact_place_type
   use mech9_motion_view, only: link_motion_type
   use mech9_mechanism, only: mechanism_type
@@ -34,7 +35,7 @@ module mech9_stop_contacts
     procedure :: group
     procedure :: number
     procedure :: unit
-    procedure :: round_off
+    procedure :: hidden_gap
   end type stop_contact_type
 
   !> All ends of all stops, and their motion at the start of a step.
@@ -99,16 +100,19 @@ contains
     if (self%contact == 0) unit = plan%unit_of(self%coordinate)
   end function unit
 
-  !> Round-off of the gap by that of the coordinates, and by that of the time, in which drives move on [rad, m].
-  pure real(wp) function round_off(self, plan, state)
+  !> The gap that round-off hides, by that of the coordinates and by that of the time, in which drives move on: a rigid end is met
+  !> or left where the gap has passed zero by more [rad, m].
+  pure real(wp) function hidden_gap(self, plan, state)
     class(stop_contact_type), intent(in) :: self   !< the end
     type(plan_type), intent(in) :: plan            !< the plan of the mechanism
     type(state_type), intent(in) :: state          !< the state, with all rates
-    real(wp) :: by_time
+    real(wp) :: by_time, unit
 
+    unit = self%unit(plan)
     by_time = spacing(state%t)*maxval(abs(state%dq)/plan%unit_of, mask=plan%driven)
-    round_off = self%unit(plan)*max(by_time, maxval(spacing(state%q)/plan%unit_of), 0.0_wp)
-  end function round_off
+    hidden_gap = max(round_off_of_gaps*max(unit, abs(self%limit)), &
+                     several_coordinates*unit*max(by_time, maxval(spacing(state%q)/plan%unit_of)))
+  end function hidden_gap
 
   !> The gap in a state, and its rate; that needs the velocities of links.
   pure function gap_motion(mechanism, plan, state, end) result(motion)
