@@ -16,6 +16,7 @@ module mech9_data_file
   use mech9_design_run, only: columns_of_runs
   use mech9_study_check, only: check_study
   use mech9_run, only: run_type
+  use mech9_run_outcome, only: run_outcome_type
   use mech9_periodic, only: periodic_found_type, find_periodic
   use mech9_periodic_run, only: take_periodic, start_periodic
   use mech9_simulation, only: interruption_type
@@ -30,12 +31,15 @@ module mech9_data_file
 
   !> It must not be copied.
   type :: data_file_type
+    character(len=:), allocatable :: path          !< of the file, as the command line names it
+    character(len=:), allocatable :: command_line  !< of the program that carries it out, behind the program's name
     type(document_type) :: document          !< its groups and items, with the changes by --set
     type(diagnostics_type) :: diagnostics    !< the errors, and the texts that they stand in; the first text is the data file
     type(diagnostics_type) :: choice         !< errors of the choice of independent coordinates, where the model cannot be read
     type(model_type) :: model                !< of use only without errors
     type(varied_document_type) :: variable   !< the model as a function of its parameters, once it is prepared
     class(run_type), allocatable :: run      !< its run, which refers to the model; not allocated before it begins
+    type(run_outcome_type) :: outcome        !< rows of the run, and the time for them
     type(periodic_found_type), allocatable :: periodic   !< periodic motions, of which the run records the first one
     type(quantity_record_type) :: quantities   !< those of the runs of a study, with their columns, once it is judged
     type(columns_type) :: run_columns          !< of the runs of a study, once these are found
@@ -68,6 +72,7 @@ contains
     integer :: i
 
     self%model%program = program
+    self%path = path
     call read_document(path, self%document, self%diagnostics)
     if (self%diagnostics%code() == exit_file) return
     do i = 1, size(settings)

@@ -13,7 +13,7 @@ module mech9_hdf5_copying
   use mech9_hdf5_reading, only: has_data_set
   implicit none
   private
-  public :: copy_data_sets, extents_of, scales_of, attribute_of
+  public :: copy_data_sets, extents_of, scales_of, attribute_of, read_attribute
 
   !> Longest text of an attribute that is read [bytes].
   integer, parameter :: longest_text = 10000
@@ -157,12 +157,12 @@ contains
     call h5dclose_f(data_set, status)
   end subroutine extents_of
 
-  !> An attribute of a data set that is a text; empty where there is none.
-  function attribute_of(file, name, attribute) result(text)
+  !> Read an attribute of a data set that is a text; it is empty where there is none.
+  subroutine read_attribute(file, name, attribute, text)
     type(hdf5_file_type), intent(inout) :: file   !< the open file
     character(len=*), intent(in) :: name          !< path of the data set
     character(len=*), intent(in) :: attribute     !< name of the attribute
-    character(len=:), allocatable :: text
+    character(len=:), allocatable, intent(out) :: text   !< its text
     type(c_ptr), target :: addresses(1)
     type(c_ptr) :: place
     character(kind=c_char), pointer :: letters(:)
@@ -192,5 +192,15 @@ contains
     end if
     call h5tclose_f(text_type, status)
     call h5aclose_f(id, status)
+  end subroutine read_attribute
+
+  !> The text of an attribute, as read_attribute reads it.
+  function attribute_of(file, name, attribute) result(text)
+    type(hdf5_file_type), intent(inout) :: file   !< the open file
+    character(len=*), intent(in) :: name          !< path of the data set
+    character(len=*), intent(in) :: attribute     !< name of the attribute
+    character(len=:), allocatable :: text
+
+    call read_attribute(file, name, attribute, text)
   end function attribute_of
 end module mech9_hdf5_copying

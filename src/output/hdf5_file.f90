@@ -58,7 +58,7 @@ contains
 
   !> The library's name and version.
   function hdf5_version() result(text)
-    character(len=:), allocatable :: text
+    character(len=40) :: text
     integer :: major, minor, release, status
 
     call h5get_libversion_f(major, minor, release, status)

@@ -2,24 +2,21 @@
 module mech9_branch_task
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_error, only: error_type
-  use mech9_json, only: json_type
   use mech9_text, only: string_type
   use mech9_heading, only: heading_of
   use mech9_plot, only: picture_of_plot
   use mech9_branch_plot, only: branch_rows_type, draw_branch_plot, read_branch_plot
   use mech9_plot_request, only: plot_request_type
-  use mech9_hdf5_file, only: hdf5_file_type
-  use mech9_branches_layout, only: write_branches
-  use mech9_answer_files, only: save_table, begin_file, end_file
+  use mech9_answer_files, only: save_table
   use mech9_program_kind, only: dynamics
   use mech9_command_line, only: command_line_type
   use mech9_data_file, only: data_file_type
   use mech9_written_files, only: result_paths_type, find_result_paths, list_plot_requests
   use mech9_recorded_branches, only: recorded_branches_type, list_columns
-  use mech9_branches_report, only: add_branches
+  use mech9_answer_record, only: save_branches
+  use mech9_answer_report, only: save_branches_report
   use mech9_branch_words, only: print_branches
   use mech9_friction_text, only: print_left_out
-  use mech9_report_parts, only: begin_report
   use mech9_signal_interruption, only: signal_interruption_type
   implicit none
   private
@@ -47,13 +44,13 @@ contains
       if (.not. options%has('quiet')) call tell(given, found)
       call save_table(paths%table, options, given, heading_of(given%model%mechanism%title, found%columns), found%rows, of_files)
       if (paths%hdf5 /= '' .and. .not. allocated(of_files)) &
-        call write_hdf5(paths%hdf5, options, given, found, of_files)
+        call save_branches(paths%hdf5, given, found, of_files)
       if (.not. allocated(of_files)) call draw_plots(options, given, found, paths%table, of_files)
     end if
     call given%fail(err)
     call given%fail(of_files)
     if (.not. options%has('report')) return
-    call save_report(options, given, paths%table, found, err)
+    call save_branches_report(options%argument('report'), given, paths%table, found, err)
     reported = .not. allocated(err)
     call given%fail(err)
   end subroutine work_on_branches
@@ -67,21 +64,6 @@ contains
     call print_branches(error_unit, found%branches_found_type, given%model%mechanism%names)
     if (any(found%of == 'equilibrium')) call print_left_out(error_unit, given%model%mechanism)
   end subroutine tell
-
-  !> Write the HDF5 file.
-  subroutine write_hdf5(path, options, given, found, err)
-    character(len=*), intent(in) :: path                 !< of the file
-    type(command_line_type), intent(in) :: options       !< the command line
-    type(data_file_type), intent(in) :: given            !< the data file
-    type(recorded_branches_type), intent(in) :: found       !< the branches
-    type(error_type), allocatable, intent(out) :: err    !< allocated if the file cannot be written
-    type(hdf5_file_type) :: file
-
-    call begin_file(path, options, given, file, err)
-    if (allocated(err)) return
-    call write_branches(found%branches_found_type, file)
-    call end_file(file, err)
-  end subroutine write_hdf5
 
   !> Draw the plots, and print a line about each.
   subroutine draw_plots(options, given, found, table, err)
@@ -128,19 +110,4 @@ contains
       if (allocated(err)) return
     end do
   end subroutine check_plots
-
-  !> Save the report.
-  subroutine save_report(options, given, table, found, err)
-    type(command_line_type), intent(in) :: options          !< the command line
-    type(data_file_type), intent(in) :: given               !< the data file
-    character(len=*), intent(in) :: table                   !< path of the table; empty: none
-    type(recorded_branches_type), intent(in) :: found          !< the branches; without any after a failure
-    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    type(json_type) :: json
-
-    call begin_report(json, given%model, given%diagnostics, table)
-    call add_branches(json, found%branches_found_type)
-    call json%end_object()
-    call json%save(options%argument('report'), err)
-  end subroutine save_report
 end module mech9_branch_task

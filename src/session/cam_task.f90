@@ -16,7 +16,7 @@ module mech9_cam_task
   use mech9_cam_picture, only: save_cam_picture
   use mech9_cam_text, only: print_cam, name_of_cam
   use mech9_cam_report, only: add_cam
-  use mech9_report_parts, only: begin_report
+  use mech9_answer_report, only: begin_answer_report
   implicit none
   private
   public :: work_on_cams
@@ -37,7 +37,7 @@ contains
     reported = .false.
     call read_files(options, size(given%model%request%cams), files, err)
     if (allocated(err)) return
-    call begin_report(json, given%model, given%diagnostics, '')
+    call begin_answer_report(json, given, '')
     call json%begin_array('cams')
     do k = 1, size(given%model%request%cams)
       if (.not. any(files%number == k)) cycle

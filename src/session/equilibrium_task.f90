@@ -3,20 +3,16 @@ module mech9_equilibrium_task
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_error, only: error_type, raise, exit_usage
   use mech9_text, only: to_text
-  use mech9_json, only: json_type
   use mech9_command_line, only: command_line_type
   use mech9_data_file, only: data_file_type
   use mech9_start_way_text, only: print_start_way
   use mech9_heading, only: heading_of
   use mech9_kept_rows, only: kept_rows_type
-  use mech9_hdf5_file, only: hdf5_file_type
-  use mech9_answer_files, only: save_table, begin_file, end_file
+  use mech9_answer_files, only: save_table
   use mech9_picture_requests, only: picture_requests_type, read_picture_requests
   use mech9_recorded_rest, only: rest_of_file_type
-  use mech9_equilibrium_layout, only: put_rows, put_forces, put_energy_shares
-  use mech9_linear_layout, only: put_linear_system
-  use mech9_report_parts, only: begin_report, add_uniqueness
-  use mech9_equilibria_report, only: add_equilibria
+  use mech9_answer_record, only: save_rest, save_linear_rest
+  use mech9_answer_report, only: save_rest_report
   use mech9_equilibrium_words, only: print_findings
   use mech9_friction_text, only: print_left_out
   use mech9_force_text, only: print_undetermined, print_forceless
@@ -59,7 +55,7 @@ contains
     if (.not. allocated(err) .and. options%has('mode')) call show_mode(options, given, pictures, rest, err)
     call given%fail(err)
     if (.not. options%has('report')) return
-    call save_report(options, given, rest, err)
+    call save_rest_report(options%argument('report'), given, options%table_of_answer(), rest, options%has('modes'), err)
     reported = .not. allocated(err)
     call given%fail(err)
   end subroutine find_rest
@@ -126,43 +122,9 @@ contains
     call save_table(options%table_of_answer(), options, given, heading_of(given%model%mechanism%title, rest%columns), &
                     rest%rows, err)
     if (.not. allocated(err) .and. options%has('hdf5')) &
-      call write_hdf5(options, given, rest, err)
-    if (.not. allocated(err) .and. options%has('linear')) call write_linear(options, given, rest, err)
+      call save_rest(options%argument('hdf5'), given, rest, options%has('modes'), err)
+    if (.not. allocated(err) .and. options%has('linear')) call save_linear_rest(options%argument('linear'), given, rest, err)
   end subroutine write_results
-
-  !> Write the rows as an HDF5 file.
-  subroutine write_hdf5(options, given, rest, err)
-    type(command_line_type), intent(in) :: options      !< the command line
-    type(data_file_type), intent(in) :: given           !< the data file
-    type(rest_of_file_type), intent(in) :: rest         !< the equilibria; the first one has the modes
-    type(error_type), allocatable, intent(out) :: err   !< allocated if the file cannot be written
-    type(hdf5_file_type) :: file
-
-    call begin_file(options%argument('hdf5'), options, given, file, err)
-    if (allocated(err)) return
-    if (options%has('modes')) then
-      call put_rows(file, rest%columns, rest%rows, 6, size(given%model%mechanism%pairs), ['_re', '_im'])
-      call put_energy_shares(file, rest%equilibria(1))
-    else
-      call put_rows(file, rest%columns, rest%rows, 2, size(given%model%mechanism%pairs), [''])
-      call put_forces(file, given%model%mechanism, rest%columns, rest%rows, rest%forces)
-    end if
-    call end_file(file, err)
-  end subroutine write_hdf5
-
-  !> Write the matrices of the linearised equations of motion.
-  subroutine write_linear(options, given, rest, err)
-    type(command_line_type), intent(in) :: options          !< the command line
-    type(data_file_type), intent(in) :: given               !< the data file
-    type(rest_of_file_type), intent(inout) :: rest          !< its first equilibrium is linearised
-    type(error_type), allocatable, intent(out) :: err       !< allocated if the file cannot be written
-    type(hdf5_file_type) :: file
-
-    call begin_file(options%argument('linear'), options, given, file, err)
-    if (allocated(err)) return
-    call put_linear_system(file, given%model, rest%equilibria(1))
-    call end_file(file, err)
-  end subroutine write_linear
 
   !> Draw the position of rest.
   subroutine sketch_rest(options, given, pictures, rest, err)
@@ -195,20 +157,4 @@ contains
     call animation%save(given%model, rest%film, err)
     if (.not. allocated(err) .and. .not. options%has('quiet')) call animation%print_words(error_unit)
   end subroutine show_mode
-
-  !> Write the report as JSON.
-  subroutine save_report(options, given, rest, err)
-    type(command_line_type), intent(in) :: options       !< the command line
-    type(data_file_type), intent(in) :: given            !< the data file
-    type(rest_of_file_type), intent(in) :: rest          !< the equilibria; none after an error
-    type(error_type), allocatable, intent(out) :: err    !< allocated if the file cannot be written
-    type(json_type) :: json
-
-    call begin_report(json, given%model, given%diagnostics, options%table_of_answer())
-    call add_equilibria(json, rest%rest_type, options%has('modes'))
-    if (allocated(rest%forces%unique)) &
-      call add_uniqueness(json, given%reacting_pairs(), rest%forces%unique, given%model%request%output%reactions_in_links)
-    call json%end_object()
-    call json%save(options%argument('report'), err)
-  end subroutine save_report
 end module mech9_equilibrium_task

@@ -4,15 +4,13 @@ module mech9_exponents_task
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_text, only: string_type
-  use mech9_json, only: json_type
   use mech9_heading, only: new_heading
   use mech9_answer_files, only: save_table
   use mech9_command_line, only: command_line_type
   use mech9_data_file, only: data_file_type
   use mech9_recorded_exponents, only: recorded_exponents_type
   use mech9_exponents_words, only: print_exponents
-  use mech9_exponents_report, only: add_exponents
-  use mech9_report_parts, only: begin_report
+  use mech9_answer_report, only: save_exponents_report
   use mech9_signal_interruption, only: signal_interruption_type
   implicit none
   private
@@ -39,7 +37,7 @@ contains
     end if
     call given%fail(err)
     if (.not. options%has('report')) return
-    call save_report(options, given, found, err)
+    call save_exponents_report(options%argument('report'), given, options%table_of_answer(), found, err)
     reported = .not. allocated(err)
     call given%fail(err)
   end subroutine work_on_exponents
@@ -57,18 +55,4 @@ contains
     call found%list_rows(names, units, rows)
     call save_table(options%table_of_answer(), options, given, new_heading(given%model%mechanism%title, names, units), rows, err)
   end subroutine write_table
-
-  !> Save the report.
-  subroutine save_report(options, given, found, err)
-    type(command_line_type), intent(in) :: options          !< the command line
-    type(data_file_type), intent(in) :: given               !< the data file
-    type(recorded_exponents_type), intent(in) :: found         !< the exponents; without them after a failure
-    type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    type(json_type) :: json
-
-    call begin_report(json, given%model, given%diagnostics, options%table_of_answer())
-    call add_exponents(json, found%exponents_found_type)
-    call json%end_object()
-    call json%save(options%argument('report'), err)
-  end subroutine save_report
 end module mech9_exponents_task

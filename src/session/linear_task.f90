@@ -9,9 +9,7 @@ module mech9_linear_task
   use mech9_command_line, only: command_line_type
   use mech9_data_file, only: data_file_type
   use mech9_recorded_linear, only: recorded_linear_motion_type
-  use mech9_hdf5_file, only: hdf5_file_type
-  use mech9_linear_layout, only: put_linear_motion
-  use mech9_answer_files, only: begin_file, end_file
+  use mech9_answer_record, only: save_linear_motion
   use mech9_signal_interruption, only: signal_interruption_type
   implicit none
   private
@@ -27,7 +25,6 @@ contains
     type(command_line_type), intent(in) :: options          !< the command line
     type(data_file_type), intent(inout) :: given            !< the data file; it gets the errors
     type(recorded_linear_motion_type) :: found
-    type(hdf5_file_type) :: file
     type(error_type), allocatable :: err
     real(wp), allocatable :: times(:)
 
@@ -35,12 +32,7 @@ contains
     if (given%failed()) return
     call read_times(options%argument('at'), times, err)
     if (.not. allocated(err)) call found%find(given, times, err, signal_interruption_type())
-    if (.not. allocated(err)) &
-      call begin_file(options%argument('linear'), options, given, file, err)
-    if (.not. allocated(err)) then
-      call put_linear_motion(file, given%model, found%linear_motion_type)
-      call end_file(file, err)
-    end if
+    if (.not. allocated(err)) call save_linear_motion(options%argument('linear'), given, found, err)
     if (allocated(err)) then
       call given%fail(err)
     else if (.not. options%has('quiet')) then

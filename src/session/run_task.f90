@@ -1,18 +1,14 @@
 !> A run of a program: it opens the results, records the motion, closes the results, and reports.
 module mech9_run_task
   use, intrinsic :: iso_fortran_env, only: error_unit
-  use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_system, only: asked_to_end
   use mech9_command_line, only: command_line_type
   use mech9_data_file, only: data_file_type
-  use mech9_json, only: json_type
   use mech9_facts, only: facts_type
   use mech9_kept_rows, only: kept_rows_type
   use mech9_result_sink, only: mark_events
   use mech9_hdf5_sink, only: hdf5_sink_type
-  use mech9_force_layout, only: write_uniqueness
-  use mech9_quantity_layout, only: write_quantities
   use mech9_structure_text, only: print_structure, print_mobility
   use mech9_held_text, only: print_held
   use mech9_parameter_text, only: print_parameter_notes
@@ -24,14 +20,11 @@ module mech9_run_task
   use mech9_quantity_words, only: print_quantities
   use mech9_section_results, only: check_section_plots, write_section_files
   use mech9_section_words, only: print_section
-  use mech9_section_layout, only: write_section
   use mech9_signal_interruption, only: signal_interruption_type
-  use mech9_run_outcome, only: run_outcome_type
-  use mech9_run_facts, only: list_run_facts
-  use mech9_whole_report, only: compose_report
+  use mech9_run_record, only: begin_run_record, begin_free_record, end_free_record, end_run_record, list_facts
+  use mech9_answer_report, only: save_run_report
   use mech9_recording, only: record
   use mech9_run_text, only: print_run
-  use mech9_row_layout, only: write_coefficients, take_changes, write_events
   implicit none
   private
   public :: carry_out
@@ -47,9 +40,7 @@ contains
     type(kept_rows_type), intent(inout), optional :: kept             !< gets the rows as well, for a look at them after the run
     type(results_type), target :: results
     type(facts_type) :: facts
-    type(json_type) :: json
     type(hdf5_sink_type), pointer :: hdf5
-    type(run_outcome_type) :: outcome
     type(error_type), allocatable :: err
     logical :: ready
 
@@ -71,46 +62,25 @@ contains
     reported = ready .and. options%has('report')
     if (.not. ready) return
     call find_tolerances(options, pictures, given, err)
-    call list_run_facts(given%run%motion, outcome, facts)
+    call list_facts(given, facts)
     call results%write_facts(facts)
     hdf5 => results%hdf5()
-    if (associated(hdf5) .and. given%run%motion%is_free()) call write_start(hdf5, given)
-    if (.not. allocated(err)) call record(given, results, options%has('quiet'), outcome, err, kept)
-    if (.not. options%has('quiet')) call print_run(error_unit, given%run%motion, results%table_path, outcome)
+    if (associated(hdf5)) call begin_free_record(hdf5, given)
+    if (.not. allocated(err)) call record(given, results, options%has('quiet'), err, kept)
+    if (.not. options%has('quiet')) call print_run(error_unit, given%run%motion, results%table_path, given%outcome)
     call given%fail(err)
-    call list_run_facts(given%run%motion, outcome, facts)
+    call list_facts(given, facts)
     call results%write_facts(facts, given%diagnostics%code())
-    if (associated(hdf5) .and. given%run%motion%is_free()) call write_end(hdf5, given)
+    if (associated(hdf5)) call end_free_record(hdf5, given)
     associate (events => given%run%motion%simulation%events)
       call mark_events(results%sinks, events, given%model%mechanism)
       if (present(kept)) call kept%take_events(events, given%model%mechanism)
     end associate
     call end_run(options, pictures, given, results)
     if (.not. reported) return
-    call compose_report(json, given%model, given%diagnostics, results%table_path, facts, given%run, given%periodic)
-    call json%save(options%argument('report'), err)
+    call save_run_report(options%argument('report'), given, results%table_path, facts, err)
     call given%fail(err)
   end subroutine carry_out
-
-  !> Write the coefficients of a free motion as data sets, and make data sets for changes of coordinates.
-  subroutine write_start(hdf5, given)
-    type(hdf5_sink_type), intent(inout) :: hdf5               !< the open file of results
-    type(data_file_type), intent(inout), target :: given      !< the data file, with a free motion that is prepared
-
-    call write_coefficients(hdf5%file, given%run%motion%plan, given%run%motion%free())
-    call hdf5%begin_changes(size(given%run%motion%plan%independent))
-  end subroutine write_start
-
-  !> Write the changes of the independent coordinates and the events as data sets.
-  subroutine write_end(hdf5, given)
-    type(hdf5_sink_type), intent(inout) :: hdf5               !< the open file of results
-    type(data_file_type), intent(inout), target :: given      !< the data file, with a free motion as far as it went
-    real(wp), allocatable :: rows(:, :)
-
-    call take_changes(given%run%motion%free(), rows)
-    call hdf5%write_changes(rows)
-    call write_events(hdf5%file, given%run%motion%free())
-  end subroutine write_end
 
   !> Find the tolerances for an accuracy, where one is asked for, and tell where the runs are that this needs.
   subroutine find_tolerances(options, pictures, given, err)
@@ -140,15 +110,11 @@ contains
     call announce(options, given)
     if (given%model%request%output%with_forces() .and. .not. options%has('quiet')) &
       call print_forceless(error_unit, given%model%mechanism)
-    associate (source => given%run%source)
-      call results%open(options, given, err)
-      ready = .not. allocated(err)
-      if (.not. ready) call given%fail(err)
-      hdf5 => results%hdf5()
-      if (.not. (ready .and. associated(hdf5))) return
-      call write_uniqueness(hdf5%file, source%columns, source%forces)
-      if (.not. source%quantities%is_empty()) call write_quantities(source%quantities, hdf5%file, again=.false.)
-    end associate
+    call results%open(options, given, err)
+    ready = .not. allocated(err)
+    if (.not. ready) call given%fail(err)
+    hdf5 => results%hdf5()
+    if (ready .and. associated(hdf5)) call begin_run_record(hdf5, given)
   end subroutine begin_run
 
   !> Close the results of a run, draw the mechanism, and print which files were written.
@@ -161,17 +127,13 @@ contains
     type(hdf5_sink_type), pointer :: hdf5
 
     hdf5 => results%hdf5()
-    associate (source => given%run%source)
-      if (associated(hdf5) .and. .not. source%quantities%is_empty()) &
-        call write_quantities(source%quantities, hdf5%file, again=.true.)
-      if (allocated(source%section)) then
-        if (associated(hdf5)) call write_section(source%section, hdf5%file)
-        associate (section => source%section)
-          call write_section_files(options, given, section%names, section%units, section%points(:, :section%count), &
-                                   results%table_path, err)
-        end associate
-      end if
-    end associate
+    if (associated(hdf5)) call end_run_record(hdf5, given)
+    if (allocated(given%run%source%section)) then
+      associate (section => given%run%source%section)
+        call write_section_files(options, given, section%names, section%units, section%points(:, :section%count), &
+                                 results%table_path, err)
+      end associate
+    end if
     call given%fail(err)
     associate (source => given%run%source)
       if (allocated(source%section) .and. .not. options%has('quiet')) &

@@ -13,9 +13,9 @@ module mech9_session
   use mech9_kept_rows, only: kept_rows_type
   use mech9_structure_text, only: print_structure_of
   use mech9_task, only: work_on_mechanism, answers_only
-  use mech9_report_parts, only: save_short_report
+  use mech9_answer_report, only: save_failure_report
   use mech9_study_task, only: work_on_study
-  use mech9_processes, only: processes_type
+  use mech9_kept_study, only: processes_type
   use mech9_dakota_task, only: work_for_dakota
   use mech9_part_merge, only: merge_parts
   use mech9_optimum_task, only: work_on_optimum
@@ -92,6 +92,8 @@ contains
     allocate (given)
     call options%arguments('set', settings)
     call given%open(path, options%program, settings)
+    given%path = options%file
+    given%command_line = options%line
     call list_inputs(path, options, given, inputs)
     call refuse_overwriting(options, inputs, err)
     if (allocated(err)) then
@@ -174,7 +176,7 @@ contains
     integer, intent(inout) :: code                      !< exit code of the program; of the first error
     type(error_type), allocatable :: err
 
-    call save_short_report(options%argument('report'), given%model, code, given%choice, given%diagnostics, err)
+    call save_failure_report(options%argument('report'), given, code, err)
     call given%fail(err)
     if (allocated(err) .and. code == exit_done) code = err%code
   end subroutine report_briefly

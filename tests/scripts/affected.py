@@ -22,7 +22,7 @@ REQUESTS = {
     'dialogue': [], 'dialogue/questions': [], 'drafts': ['interchange/', 'synthesis/'], 'terminal': ['terminal/'],
     'pictures/plots': ['pictures/', 'study/', 'synthesis/'], 'pictures/scene': ['pictures/', 'synthesis/'],
     'pictures/films': ['pictures/', 'synthesis/'], 'pictures/arrows': ['pictures/'],
-    'synthesis': ['synthesis/', 'threads/'], 'session/synthesis': ['synthesis/', 'threads/'],
+    'synthesis': ['synthesis/', 'threads/'],
     'analyses/planar_runs': ['synthesis/', 'threads/'], 'session/study': ['study/', 'synthesis/', 'analyses/', 'input/', 'threads/'],
     'sampling': ['study/', 'synthesis/', 'threads/'], 'numerics/minima': ['synthesis/', 'threads/'],
     'analyses/equilibrium': ['analyses/', 'model/', 'simulation/'],

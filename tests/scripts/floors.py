@@ -13,7 +13,7 @@ FLOORS = ['base', 'system', 'numerics', 'numerics/minima', 'numerics/continuatio
           'simulation/events', 'simulation',
           'analyses/equilibrium', 'analyses/continuation', 'analyses/planar_runs', 'analyses', 'wording', 'runs', 'runs/long_term', 'studies', 'synthesis', 'input/document', 'input', 'drafts', 'input/checks', 'searches', 'output/layout', 'output', 'interchange/xml', 'interchange', 'reports',
           'pictures/plots', 'pictures/scene', 'pictures/arrows',
-          'pictures/films', 'terminal', 'session/command', 'descriptions', 'descriptions/motions', 'facade', 'facade/made', 'api', 'session/results', 'session/study', 'session/synthesis', 'session',
+          'pictures/films', 'terminal', 'session/command', 'descriptions', 'descriptions/motions', 'facade', 'facade/files', 'facade/made', 'api', 'session/results', 'session/study', 'session',
           'dialogue/questions',
           'dialogue',
           'programs/mpi', 'programs']

@@ -9,7 +9,7 @@ from mech9_cases import TREE, text_of
 
 MOST_FILES = 25            # in one folder: more are hard to find one's way in
 MOST_KINEMATICS = 13       # files of the kinematics, without those of tolerances, that Lagrange's equations depend on, directly and through others
-MOST_OF_SESSION = 14       # floors that the session uses, with its sub-floors: the number only goes down
+MOST_OF_SESSION = 10       # floors that the session uses, with its sub-floors: the number only goes down
 FACADE = ('facade', 'mech9')      # the one module that other programs use
 WITHOUT_ONLY = {('user', 'mech9_taylor')}
 

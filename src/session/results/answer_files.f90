@@ -1,4 +1,4 @@
-!> Files of answers that are no runs: a table of all rows at once, and an HDF5 file with the origin of its numbers.
+!> Tables of answers that are no runs: all rows are written at once.
 module mech9_answer_files
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -6,13 +6,10 @@ module mech9_answer_files
   use mech9_data_file, only: data_file_type
   use mech9_heading, only: heading_type
   use mech9_table, only: table_type
-  use mech9_hdf5_file, only: hdf5_file_type
-  use mech9_structure_layout, only: write_structure, write_coordinates
-  use mech9_hdf5_record, only: write_provenance
   use mech9_version, only: name_and_version
   implicit none
   private
-  public :: save_table, begin_file, end_file
+  public :: save_table
 
 contains
 
@@ -37,29 +34,4 @@ contains
     call table%close(at_close)
     if (.not. allocated(err)) call move_alloc(at_close, err)
   end subroutine save_table
-
-  !> Create an HDF5 file with the origin of its numbers, the structure and the coordinates.
-  subroutine begin_file(path, options, given, file, err)
-    character(len=*), intent(in) :: path                !< of the file
-    type(command_line_type), intent(in) :: options      !< the command line
-    type(data_file_type), intent(in) :: given           !< the data file
-    type(hdf5_file_type), intent(inout) :: file         !< the open file
-    type(error_type), allocatable, intent(out) :: err   !< allocated if the file cannot be written
-
-    call file%create(path, err)
-    if (allocated(err)) return
-    call write_coordinates(file, given%model)
-    call write_provenance(file, options, given)
-    call write_structure(file, given%model)
-  end subroutine begin_file
-
-  !> Write all to the file and close it.
-  subroutine end_file(file, err)
-    type(hdf5_file_type), intent(inout) :: file         !< the open file
-    type(error_type), allocatable, intent(out) :: err   !< the first failure of the file
-
-    call file%flush()
-    call file%close()
-    if (allocated(file%failure)) err = file%failure
-  end subroutine end_file
 end module mech9_answer_files

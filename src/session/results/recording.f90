@@ -8,7 +8,6 @@ module mech9_recording
   use mech9_text, only: to_text
   use mech9_data_file, only: data_file_type
   use mech9_kept_rows, only: kept_rows_type
-  use mech9_run_outcome, only: run_outcome_type
   use mech9_results, only: results_type
   use mech9_progress, only: progress_type
   use mech9_standing_text, only: standing_text
@@ -29,11 +28,10 @@ contains
   !> Record the rows at all output times in the results, which stay open. When the motion cannot go on, or the user
   !> interrupts, the computed rows are written first. A motion that takes long to its next output pauses: earlier rows
   !> reach the files, and the user is told its place.
-  subroutine record(given, results, quiet, outcome, err, kept)
-    type(data_file_type), intent(inout) :: given                !< the data file, with its run
+  subroutine record(given, results, quiet, err, kept)
+    type(data_file_type), intent(inout) :: given                !< the data file, with its run; it gets the outcome
     type(results_type), intent(inout) :: results                !< open
     logical, intent(in) :: quiet                                !< no progress is shown
-    type(run_outcome_type), intent(out) :: outcome        !< how the recording went
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(kept_rows_type), intent(inout), optional :: kept   !< gets the rows, for use after the run
     type(error_type), allocatable :: stopped, at_flush
@@ -60,10 +58,10 @@ contains
     held_back = .false.
     next = 0
     do while (next <= given%model%request%time%intervals .and. .not. allocated(stopped))
-      call lap(clock, outcome%seconds_writing)
+      call lap(clock, given%outcome%seconds_writing)
       call compute_rows(given, progress, pacer, next, rows, count, stopped)
-      call lap(clock, outcome%seconds_solving)
-      outcome%rows = outcome%rows + count
+      call lap(clock, given%outcome%seconds_solving)
+      given%outcome%rows = given%outcome%rows + count
       if (present(kept)) call kept%take(rows(:given%run%source%columns%count, :count))
       call results%write_rows(rows(:, :count), err)
       if (allocated(err)) exit
@@ -89,7 +87,7 @@ contains
     if (.not. (allocated(stopped) .or. allocated(err) .or. given%run%source%quantities%is_empty())) &
       call given%run%source%quantities%finish()
     call results%flush(at_flush)
-    call lap(clock, outcome%seconds_writing)
+    call lap(clock, given%outcome%seconds_writing)
     if (.not. allocated(err)) call move_alloc(at_flush, err)
     if (.not. allocated(err)) call move_alloc(stopped, err)
   end subroutine record

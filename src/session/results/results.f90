@@ -15,8 +15,7 @@ module mech9_results
   use mech9_xdmf, only: new_xdmf
   use mech9_command_line, only: command_line_type
   use mech9_written_files, only: result_paths_type, find_result_paths, list_plot_requests
-  use mech9_structure_layout, only: write_structure
-  use mech9_hdf5_record, only: write_provenance
+  use mech9_run_record, only: write_run_origin
   use mech9_version, only: name_and_version
   implicit none
   private
@@ -61,7 +60,7 @@ contains
     call self%open_plots(options, given, plots, err)
     if (.not. allocated(err) .and. self%table_path /= '') call self%open_table(options, given, err)
     if (.not. allocated(err) .and. self%hdf5_path /= '') &
-      call self%open_hdf5(options, given, err)
+      call self%open_hdf5(given, err)
     if (allocated(err)) then
       call self%close(at_close)
       return
@@ -136,9 +135,8 @@ contains
     call append_sink(self%sinks, sink)
   end subroutine open_table
 
-  subroutine open_hdf5(self, options, given, err)
+  subroutine open_hdf5(self, given, err)
     class(results_type), intent(inout) :: self          !< the results
-    type(command_line_type), intent(in) :: options      !< the command line
     type(data_file_type), intent(in) :: given           !< the data file
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(hdf5_sink_type), allocatable :: file
@@ -149,9 +147,7 @@ contains
     call file%open(self%hdf5_path, given%model%mechanism, given%model%request, &
                    given%run%source%columns, err)
     if (allocated(err)) return
-    call write_provenance(file%file, options, given)
-    call write_structure(file%file, given%model)
-    call file%tell(err)
+    call write_run_origin(file, given, err)
     call move_alloc(file, sink)
     call append_sink(self%sinks, sink)
     if (given%run%source%columns%poses%n_links == 0) return

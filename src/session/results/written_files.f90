@@ -10,11 +10,13 @@ module mech9_written_files
   use mech9_structure_graph, only: text_of_graph
   use mech9_xdmf, only: xdmf_path
   use mech9_data_file, only: data_file_type
+  use mech9_kept_files, only: kept_files_type
   use mech9_command_line, only: command_line_type
   use mech9_cam_files, only: cam_file_type, read_cam_file
   implicit none
   private
-  public :: result_paths_type, written_file_type, find_result_paths, list_written_files, standard_output_path, list_plot_requests
+  public :: result_paths_type, written_file_type, find_result_paths, find_kept_files, list_written_files, standard_output_path, &
+            list_plot_requests
 
   !> The name that stands for standard output.
   character, parameter :: standard_output_path = '-'
@@ -74,6 +76,22 @@ contains
       paths%table = standard_output_path
     end if
   end subroutine find_result_paths
+
+  !> Find the files that keep a study or a search.
+  pure subroutine find_kept_files(options, given, files)
+    type(command_line_type), intent(in) :: options      !< the command line
+    class(data_file_type), intent(in) :: given          !< the data file
+    type(kept_files_type), intent(out) :: files         !< table and HDF5 file, and the part that they get
+    type(result_paths_type) :: paths
+
+    call find_result_paths(options, paths, given)
+    files%table = paths%table
+    files%hdf5 = paths%hdf5
+    files%continues = options%has('continue')
+    files%part = options%part()
+    files%part_words = options%argument('part')
+    files%quiet = options%has('quiet')
+  end subroutine find_kept_files
 
   !> Take the path that an option names, in place of that of the data file.
   pure subroutine choose(options, option, path)

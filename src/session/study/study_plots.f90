@@ -8,7 +8,7 @@ module mech9_study_plots
   use mech9_plot_request, only: is_of_section
   use mech9_study_plot, only: study_plot_type
   use mech9_heading, only: new_heading
-  use mech9_study_statistics, only: study_statistics_type
+  use mech9_kept_study, only: kept_study_type
   implicit none
   private
   public :: study_plots_type
@@ -58,9 +58,9 @@ contains
   end subroutine open_plots
 
   !> Draw all plots, and print a line about each. Return the first failure; the other plots are drawn all the same.
-  subroutine draw_plots(self, statistics, unit, quiet, err)
+  subroutine draw_plots(self, study, unit, quiet, err)
     class(study_plots_type), intent(inout) :: self          !< the plots
-    type(study_statistics_type), intent(in) :: statistics   !< with a sample of the runs
+    type(kept_study_type), intent(in) :: study              !< made, with a sample of the runs
     integer, intent(in) :: unit                             !< Fortran unit to write to
     logical, intent(in) :: quiet                            !< only a picture that could not be made is told
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
@@ -68,8 +68,8 @@ contains
     integer :: i
 
     do i = 1, size(self%plots)
-      associate (plot => self%plots(i), rows => statistics%sample%rows(:, :statistics%sample%kept))
-        call plot%draw(rows, own)
+      associate (plot => self%plots(i), sample => study%runs%statistics%sample)
+        call plot%draw(sample%rows(:, :sample%kept), own)
         if (.not. allocated(err)) call move_alloc(own, err)
         if (plot%said /= '' .and. (plot%is_lacking .or. .not. quiet)) write (unit, '(a)') plot%said
       end associate

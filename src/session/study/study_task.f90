@@ -8,29 +8,21 @@ module mech9_study_task
   use mech9_system, only: asked_to_end
   use mech9_command_line, only: command_line_type
   use mech9_data_file, only: data_file_type
-  use mech9_written_files, only: result_paths_type, find_result_paths
-  use mech9_study_runs, only: study_runs_type
-  use mech9_study_results, only: study_results_type
+  use mech9_written_files, only: result_paths_type, find_result_paths, find_kept_files, standard_output_path
+  use mech9_kept_files, only: kept_files_type
+  use mech9_kept_study, only: kept_study_type, processes_type, threads_of_machine, threads_for, has_threads
   use mech9_signal_interruption, only: signal_interruption_type
   use mech9_study_columns, only: refuse_varied_times
   use mech9_study_plots, only: study_plots_type
-  use mech9_processes, only: processes_type
-  use mech9_study_threads, only: threads_of_machine, threads_for, has_threads
-  use mech9_study_propagation, only: propagation_type, propagate
   use mech9_section_results, only: check_section_plots, write_section_files
   use mech9_section_words, only: print_section
   use mech9_study_words, only: print_study
-  use mech9_json, only: json_type
-  use mech9_report_parts, only: begin_report
-  use mech9_study_report, only: add_study
   implicit none
   private
   public :: work_on_study
 
   !> Most threads that a user may ask for; the system refuses more of them in ways that a program cannot tell.
   integer, parameter :: most_threads = 1024
-  !> How many runs for each thread may be made before one that takes long is written.
-  integer, parameter :: runs_ahead = 64
 
 contains
 
@@ -40,7 +32,7 @@ contains
     type(data_file_type), intent(inout), target :: given    !< the data file; it gets the errors
     logical, intent(out) :: reported                        !< a report was asked for, and it is written
     type(processes_type), intent(inout) :: processes  !< those that make the runs together
-    type(study_results_type), target :: results
+    type(kept_study_type), target :: study
     type(study_plots_type) :: plots
     type(signal_interruption_type) :: interruption
     type(error_type), allocatable :: err
@@ -57,33 +49,33 @@ contains
       return
     end if
     if (.not. allocated(err)) then
-      call open_files(options, given, results, plots, err)
+      call open_files(options, given, study, plots, err)
       call processes%agree(err)
     end if
     if (allocated(err)) then
       call given%fail(err)
     else
-      call carry_out(options, given, results, plots, reported, processes)
+      call carry_out(options, given, study, plots, reported, processes)
     end if
   end subroutine work_on_study
 
   !> Open the files of a study, and read the requests for its plots.
-  subroutine open_files(options, given, results, plots, err)
+  subroutine open_files(options, given, study, plots, err)
     type(command_line_type), intent(in) :: options          !< the command line
     type(data_file_type), intent(in) :: given               !< the data file
-    type(study_results_type), intent(inout) :: results      !< gets the open files
+    type(kept_study_type), intent(inout) :: study           !< gets the open files
     type(study_plots_type), intent(inout) :: plots          !< gets the requests
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    type(result_paths_type) :: paths
+    type(kept_files_type) :: wanted
 
-    call find_result_paths(options, paths, given)
-    call plots%open(options, given, paths%table, err)
+    call find_kept_files(options, given, wanted)
+    call plots%open(options, given, wanted%table, err)
     if (allocated(err)) return
     if (.not. options%has('quiet')) call print_notes(options, given)
-    call results%open(options, given, err)
+    call study%results%open(wanted, given, err)
     if (allocated(err)) return
-    if (allocated(results%section)) then
-      call check_section_plots(options, given, err, results%section%names)
+    if (allocated(study%results%section)) then
+      call check_section_plots(options, given, err, study%results%section%names)
     else
       call check_section_plots(options, given, err)
     end if
@@ -168,70 +160,77 @@ contains
   end subroutine print_notes
 
   !> Make the runs, close the files, and tell how the study went. Where every run failed, the first failure is that of the study.
-  subroutine carry_out(options, given, results, plots, reported, processes)
+  subroutine carry_out(options, given, study, plots, reported, processes)
     type(command_line_type), intent(in) :: options          !< the command line
     type(data_file_type), intent(inout), target :: given    !< the data file; it gets the errors
-    type(study_results_type), intent(inout), target :: results   !< open, and closed on return
+    type(kept_study_type), intent(inout), target :: study   !< with its open files, which are closed on return
     type(study_plots_type), intent(inout) :: plots          !< the plots that are requested
     logical, intent(inout) :: reported                      !< the report is written
-    type(processes_type), intent(in) :: processes     !< those that make the runs together
-    type(study_runs_type) :: runs
-    type(propagation_type), allocatable :: propagation(:)
+    type(processes_type), intent(in) :: processes           !< those that make the runs together
     type(signal_interruption_type), target :: interruption
-    type(json_type) :: json
-    type(error_type), allocatable :: err, without_shares, of_section
+    type(error_type), allocatable :: err
     real(wp) :: clock
-    integer :: threads
     logical :: quiet, kept
 
     quiet = options%has('quiet')
     clock = seconds()
-    threads = threads_of_study(options, given)
     call interruption%words%start(given%model%program, 'no result', 'it', quiet, with_progress=.false.)
-    call runs%begin(given%model, results, runs_ahead*max(threads, processes%count), options%has('plot'), interruption)
-    call processes%lead(given%model, given%variable, threads, interruption, runs)
-    call runs%finish(err)
+    call study%make(given, processes, threads_of_study(options, given), options%has('plot'), interruption, err)
     kept = .true.
     if (allocated(err)) kept = err%code == exit_interrupted
     clock = seconds() - clock
-    allocate (propagation(0))
-    if (.not. (allocated(err) .or. given%model%request%study%classes .or. given%model%request%study%exponents > 0) .and. &
-        runs%statistics%drawn .and. runs%sums%done > 0 .and. .not. (quiet .and. .not. options%has('report'))) then
+    if (.not. allocated(err) .and. study%has_scatter(given) .and. (options%has('report') .or. .not. quiet)) then
       call interruption%words%start(given%model%program, 'no derivatives at the means yet', 'their run', quiet, &
                                     with_progress=.false.)
-      call propagate(given%model, given%variable, interruption, propagation, without_shares)
+      call study%find_scatter(given, interruption)
     end if
-    if (.not. quiet) call print_study(error_unit, given%model, given%quantities, runs, propagation, clock)
-    if (.not. quiet .and. allocated(without_shares)) &
-      write (error_unit, '(a)') 'note: no shares by derivatives: '//without_shares%message
-    if (.not. quiet .and. kept) call results%print_paths(error_unit)
-    if (allocated(results%section)) then
-      associate (section => results%section)
-        call write_section_files(options, given, section%names, section%units, section%points(:, :section%count), &
-                                 results%paths%table, of_section)
-      end associate
-      call given%fail(of_section)
-      if (.not. quiet) &
-        call print_section(error_unit, results%section, .not. options%has('no-write'), given%model%mechanism%names)
-    end if
+    if (.not. quiet) call print_study(error_unit, given%model, given%quantities, study%runs, study%propagation, clock)
+    if (.not. quiet .and. allocated(study%without_shares)) &
+      write (error_unit, '(a)') 'note: no shares by derivatives: '//study%without_shares%message
+    if (.not. quiet .and. kept) call print_paths(study)
+    call finish_section(options, given, study)
     if (allocated(err)) then
       call given%fail(err)
-    else if (allocated(runs%first_failure) .and. runs%sums%done == 0) then
-      call given%fail(runs%first_failure)
-    else if (allocated(runs%first_failure) .and. .not. quiet) then
-      call given%report_failure(runs%first_failure, error_unit)
+    else if (allocated(study%runs%first_failure) .and. study%runs%sums%done == 0) then
+      call given%fail(study%runs%first_failure)
+    else if (allocated(study%runs%first_failure) .and. .not. quiet) then
+      call given%report_failure(study%runs%first_failure, error_unit)
     end if
     ! an interrupted program makes no pictures, which would take too long
     if (.not. asked_to_end()) then
-      call plots%draw(runs%statistics, error_unit, quiet, err)
+      call plots%draw(study, error_unit, quiet, err)
       call given%fail(err)
     end if
     if (.not. options%has('report')) return
-    call begin_report(json, given%model, given%diagnostics, results%paths%table)
-    call add_study(json, given%model, given%quantities, runs, propagation)
-    call json%end_object()
-    call json%save(options%argument('report'), err)
+    call study%save_report(options%argument('report'), given, err)
     reported = .true.
     call given%fail(err)
   end subroutine carry_out
+
+  !> Print where the results are.
+  subroutine print_paths(study)
+    type(kept_study_type), intent(in) :: study   !< made
+
+    associate (wanted => study%results%wanted)
+      if (wanted%table /= '' .and. wanted%table /= standard_output_path) write (error_unit, '(2a)') 'table: ', wanted%table
+      if (wanted%hdf5 /= '') write (error_unit, '(2a)') 'HDF5 file: ', wanted%hdf5
+    end associate
+  end subroutine print_paths
+
+  !> Write the files of the section, where there is one, and tell of it.
+  subroutine finish_section(options, given, study)
+    type(command_line_type), intent(in) :: options          !< the command line
+    type(data_file_type), intent(inout) :: given            !< the data file; it gets the errors
+    type(kept_study_type), intent(in) :: study              !< made
+    type(error_type), allocatable :: err
+
+    if (.not. allocated(study%results%section)) return
+    associate (section => study%results%section)
+      call write_section_files(options, given, section%names, section%units, section%points(:, :section%count), &
+                               study%results%wanted%table, err)
+    end associate
+    call given%fail(err)
+    if (.not. options%has('quiet')) &
+      call print_section(error_unit, study%results%section, .not. options%has('no-write'), given%model%mechanism%names)
+  end subroutine finish_section
 end module mech9_study_task

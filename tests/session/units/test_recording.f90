@@ -15,7 +15,6 @@ module test_recording
   use mech9_model, only: model_type
   use mech9_data_file, only: data_file_type
   use mech9_plan, only: plan_type
-  use mech9_run_outcome, only: run_outcome_type
   use mech9_recording, only: record
   use mech9_results, only: results_type
   use mech9_row_source, only: row_source_type, new_row_source
@@ -51,7 +50,6 @@ contains
     type(data_file_type), target :: given
     type(command_line_type) :: options
     type(results_type) :: results
-    type(run_outcome_type) :: outcome
     type(kept_rows_type) :: kept
     type(error_type), allocatable :: err
 
@@ -67,11 +65,11 @@ contains
     call options_of(tester, 'a.nml --table '//stem//'.dat --hdf5 '//stem//'.h5 --quiet', options)
     call results%open(options, given, err)
     call tester%no_error(err, 'files are opened')
-    call record(given, results, .true., outcome, err, kept)
+    call record(given, results, .true., err, kept)
     call tester%no_error(err, 'the run is recorded')
     call results%close(err)
     call tester%no_error(err, 'files are closed')
-    call tester%is_true(outcome%rows == n + 1, 'a row for each output')
+    call tester%is_true(given%outcome%rows == n + 1, 'a row for each output')
     call given%close_run()
     call check_rows(tester, kept)
     call check_files(tester, data)

@@ -12,7 +12,9 @@ module test_study_runs
   use mech9_signal_interruption, only: signal_interruption_type
   use mech9_study_file, only: study_file_type
   use mech9_part_merge, only: merge_parts
+  use mech9_written_files, only: find_kept_files
   use mech9_study_propagation, only: propagation_type, propagate
+  use mech9_kept_files, only: kept_files_type
   use mech9_study_results, only: study_results_type
   use mech9_study_runs, only: study_runs_type, all_handed_out, wait_for_others
   use mech9_study_threads, only: make_in_threads, threads_of_machine
@@ -78,10 +80,12 @@ contains
     type(study_runs_type), intent(out) :: runs        !< about to begin
     type(signal_interruption_type) :: interruption
     type(command_line_type) :: options
+    type(kept_files_type) :: wanted
     type(error_type), allocatable :: err
 
     call options_of(tester, line, options)
-    call results%open(options, this%given, err)
+    call find_kept_files(options, this%given, wanted)
+    call results%open(wanted, this%given, err)
     call tester%no_error(err, 'results of '//line)
     call runs%begin(this%given%model, results, ahead, .false., interruption)
   end subroutine begin

@@ -5,12 +5,11 @@ module mech9_study_results
   use mech9_text, only: string_type, to_text
   use mech9_program_kind, only: program_names
   use mech9_version, only: name_and_version
-  use mech9_command_line, only: command_line_type
   use mech9_data_file, only: data_file_type
   use mech9_table, only: table_type
   use mech9_progress, only: progress_type
   use mech9_heading, only: new_heading
-  use mech9_written_files, only: result_paths_type, find_result_paths, standard_output_path
+  use mech9_kept_files, only: kept_files_type
   use mech9_run_maker, only: made_run_type
   use mech9_study_sink, only: study_sink_type
   use mech9_study_sums, only: study_sums_type
@@ -25,7 +24,7 @@ module mech9_study_results
   public :: study_results_type
 
   type, extends(study_sink_type) :: study_results_type
-    type(result_paths_type) :: paths                !< of the files; empty where there is none
+    type(kept_files_type) :: wanted                 !< the files that are asked for
     type(table_type), private :: table
     type(study_file_type), private :: file          !< of HDF5
     type(progress_type), private :: progress        !< shown on a terminal
@@ -38,15 +37,14 @@ module mech9_study_results
     procedure :: show_run
     procedure :: tell_progress
     procedure :: close => close_results
-    procedure :: print_paths
   end type study_results_type
 
 contains
 
   !> Open the files that are asked for. After an error none is open, and none has changed where the other one cannot be opened.
-  subroutine open_results(self, options, given, err)
+  subroutine open_results(self, wanted, given, err)
     class(study_results_type), intent(out) :: self            !< the files
-    type(command_line_type), intent(in) :: options            !< the command line
+    type(kept_files_type), intent(in) :: wanted               !< the files that are asked for
     type(data_file_type), intent(in) :: given                 !< the data file
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
     type(string_type), allocatable :: names(:), units(:)
@@ -54,21 +52,21 @@ contains
     type(study_layout_type) :: layout
     character(len=:), allocatable :: definition
 
-    call find_result_paths(options, self%paths, given)
-    self%part = options%part()
+    self%wanted = wanted
+    self%part = wanted%part
     call begin_section(given%model, self%section, err)
     if (allocated(err)) return
-    if (self%paths%hdf5 /= '') then
+    if (self%wanted%hdf5 /= '') then
       call define_study(given, definition, err)
       if (allocated(err)) return
-      if (options%has('continue')) then
-        call continue_file(self, options, definition, err)
+      if (wanted%continues) then
+        call continue_file(self, definition, err)
       else
         call layout_of(given, definition, self%part, layout)
-        call self%file%create(self%paths%hdf5, layout, err)
-        if (.not. allocated(err)) call write_provenance(self%file%file, options, given)
+        call self%file%create(self%wanted%hdf5, layout, err)
+        if (.not. allocated(err)) call write_provenance(self%file%file, given)
       end if
-      if (.not. allocated(err) .and. given%model%request%output%hdf5_runs) call begin_columns(self, options, given, err)
+      if (.not. allocated(err) .and. given%model%request%output%hdf5_runs) call begin_columns(self, given, err)
       if (allocated(err)) then
         call self%close(at_close)
         return
@@ -76,25 +74,24 @@ contains
     end if
     call list_columns(given, names, units)
     allocate (self%row(size(names)), source=0.0_wp)
-    if (self%paths%table /= '') &
-      call self%table%open(self%paths%table, new_heading(given%model%mechanism%title, names, units), &
+    if (self%wanted%table /= '') &
+      call self%table%open(self%wanted%table, new_heading(given%model%mechanism%title, names, units), &
                            name_and_version(given%model%program), err)
-    if (.not. allocated(err) .and. self%paths%hdf5 /= '' .and. .not. options%has('continue')) call self%file%publish(err)
+    if (.not. allocated(err) .and. self%wanted%hdf5 /= '' .and. .not. wanted%continues) call self%file%publish(err)
     if (allocated(err)) then
       call self%close(at_close)
     else
-      call self%progress%start(program_names(given%model%program), options%has('quiet'))
+      call self%progress%start(program_names(given%model%program), wanted%quiet)
     end if
   end subroutine open_results
 
   !> Begin the columns of all runs in the HDF5 file, which is new or continued.
-  subroutine begin_columns(self, options, given, err)
+  subroutine begin_columns(self, given, err)
     class(study_results_type), intent(inout) :: self          !< the files
-    type(command_line_type), intent(in) :: options            !< the command line
     type(data_file_type), intent(in) :: given                 !< the data file
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
 
-    if (options%has('continue')) then
+    if (self%wanted%continues) then
       call self%file%open_columns(given, err)
     else
       call self%file%create_columns(given, err)
@@ -102,19 +99,18 @@ contains
   end subroutine begin_columns
 
   !> Open the file to be continued, for the part of the study that is noted in it.
-  subroutine continue_file(self, options, definition, err)
+  subroutine continue_file(self, definition, err)
     class(study_results_type), intent(inout) :: self          !< the files
-    type(command_line_type), intent(in) :: options            !< the command line
     character(len=*), intent(in) :: definition                !< text that determines the numbers of the study
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
     type(error_type), allocatable :: at_close
 
-    call self%file%open(self%paths%hdf5, .true., definition, err)
+    call self%file%open(self%wanted%hdf5, .true., definition, err)
     if (allocated(err)) return
     self%part = self%file%layout%part
-    if (.not. options%has('part') .or. all(options%part() == self%part)) return
-    call raise(err, exit_file, "'"//self%paths%hdf5//"' is of part "//to_text(self%part(1))//'/'//to_text(self%part(2))// &
-               ', and --part '//options%argument('part')//' is another one; leave out --part to continue the part of the file')
+    if (self%wanted%part_words == '' .or. all(self%wanted%part == self%part)) return
+    call raise(err, exit_file, "'"//self%wanted%hdf5//"' is of part "//to_text(self%part(1))//'/'//to_text(self%part(2))// &
+               ', and --part '//self%wanted%part_words//' is another one; leave out --part to continue the part of the file')
     call self%file%close(at_close)
   end subroutine continue_file
 
@@ -183,7 +179,7 @@ contains
     ! the class is known only now
     if (allocated(run%cycle) .and. self%file%is_open()) call self%file%write_outcome(run%number, run, err)
     if (allocated(err)) return
-    if (self%paths%table == '') return
+    if (self%wanted%table == '') return
     n = 1 + size(run%values)
     self%row(1) = run%number
     self%row(2:n) = run%values
@@ -198,14 +194,16 @@ contains
     real(wp), intent(in) :: done                           !< share of the runs that are shown, up to 1
     real(wp), intent(in) :: read                           !< share of the runs that were made before
     type(study_sums_type), intent(in) :: sums              !< over the runs that are shown
+    character(len=:), allocatable :: failed
 
-    call self%progress%update(done, failed_words(sums), read)
+    call count_failed(sums, failed)
+    call self%progress%update(done, failed, read)
   end subroutine tell_progress
 
-  !> How many runs failed so far, by their codes.
-  pure function failed_words(sums) result(words)
-    type(study_sums_type), intent(in) :: sums   !< over the runs
-    character(len=:), allocatable :: words
+  !> Tell how many runs failed so far, by their codes.
+  pure subroutine count_failed(sums, words)
+    type(study_sums_type), intent(in) :: sums                  !< over the runs
+    character(len=:), allocatable, intent(out) :: words        !< empty where none failed
     integer :: i
 
     words = ''
@@ -214,7 +212,7 @@ contains
       if (i > 1) words = words//', '
       words = words//to_text(sums%failed(i))//' (code '//to_text(sums%codes(i))//')'
     end do
-  end function failed_words
+  end subroutine count_failed
 
   !> Close the files.
   subroutine close_results(self, err)
@@ -228,13 +226,4 @@ contains
     call self%table%close(of_table)
     if (.not. allocated(err)) call move_alloc(of_table, err)
   end subroutine close_results
-
-  !> Print where the results are.
-  subroutine print_paths(self, unit)
-    class(study_results_type), intent(in) :: self   !< the files
-    integer, intent(in) :: unit                     !< Fortran unit to write to
-
-    if (self%paths%table /= '' .and. self%paths%table /= standard_output_path) write (unit, '(2a)') 'table: ', self%paths%table
-    if (self%paths%hdf5 /= '') write (unit, '(2a)') 'HDF5 file: ', self%paths%hdf5
-  end subroutine print_paths
 end module mech9_study_results

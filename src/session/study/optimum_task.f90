@@ -7,18 +7,14 @@ module mech9_optimum_task
   use mech9_clock, only: seconds
   use mech9_command_line, only: command_line_type
   use mech9_data_file, only: data_file_type
-  use mech9_study_threads, only: threads_for
-  use mech9_processes, only: processes_type
-  use mech9_search, only: optimum_search_type, check_request
+  use mech9_kept_files, only: kept_files_type
+  use mech9_kept_study, only: processes_type, threads_for
+  use mech9_kept_search, only: kept_search_type
   use mech9_signal_interruption, only: signal_interruption_type
-  use mech9_table, only: table_type
-  use mech9_starts, only: starts_type
-  use mech9_optimum_results, only: open_results, write_results, table_of
+  use mech9_written_files, only: find_kept_files, standard_output_path
+  use mech9_text_file, only: replace_text
   use mech9_optimum_pictures, only: optimum_pictures_type
   use mech9_optimum_words, only: print_differences, print_optimum
-  use mech9_json, only: json_type
-  use mech9_report_parts, only: begin_report
-  use mech9_optimum_report, only: add_optimum
   implicit none
   private
   public :: work_on_optimum
@@ -31,56 +27,85 @@ contains
     type(data_file_type), intent(inout), target :: given            !< the data file; it gets the errors
     logical, intent(out) :: reported                                !< a report was asked for, and it is written
     type(processes_type), intent(inout) :: processes                !< those that make the starts together
-    type(optimum_search_type), allocatable, target :: search
-    type(starts_type) :: starts
-    type(table_type) :: table
+    type(kept_search_type), allocatable, target :: found
+    type(kept_files_type) :: wanted
     type(optimum_pictures_type) :: pictures
-    type(json_type) :: json
     type(signal_interruption_type) :: interruption
     type(error_type), allocatable :: err
     real(wp) :: clock
 
     reported = .false.
-    allocate (search)
+    allocate (found)
     clock = seconds()
-    call check_request(given%model, err)
+    call found%check(given, err)
     if (.not. allocated(err)) call refuse_changed_design(options, err)
     if (.not. allocated(err)) call refuse_empty_part(options, given, err)
     if (.not. allocated(err) .and. processes%is_first) call pictures%open(options, given, err)
     if (.not. allocated(err)) then
       call interruption%words%start(given%model%program, 'no result of a run of the search', 'it', options%has('quiet'), &
                                     with_progress=.false.)
-      call search%prepare(given%variable, given%model, interruption, err)
+      call found%prepare(given, interruption, err)
     end if
     call processes%agree(err)
     if (.not. allocated(err)) then
-      if (processes%is_first) call open_results(options, given, search%synthesis, starts, table, err)
+      call find_kept_files(options, given, wanted)
+      if (processes%is_first) call found%open(wanted, given, err)
       call processes%agree(err)
     end if
     if (.not. processes%is_first) then
       reported = .true.
-      if (.not. allocated(err)) call search%follow(given%model)
+      if (.not. allocated(err)) call found%follow(given)
       return
     end if
     if (allocated(err)) then
       call given%fail(err)
       return
     end if
-    if (.not. options%has('quiet')) call print_differences(error_unit, search)
-    call starts%begin_shown(given%model%program, options%has('quiet'))
-    call search%make(given%model, processes, threads_of(options, given), starts, err)
-    if (.not. options%has('quiet')) call print_optimum(error_unit, given%model, search%synthesis, seconds() - clock)
+    if (.not. options%has('quiet')) call print_differences(error_unit, found%search)
+    call found%make(given, processes, threads_of(options, given), err)
+    if (.not. options%has('quiet')) call print_optimum(error_unit, given%model, found%search%synthesis, seconds() - clock)
     call given%fail(err)
-    call write_results(options, given, search%synthesis, starts, table)
-    call pictures%draw(options, given, search%synthesis)
+    call write_results(options, given, found)
+    call pictures%draw(options, given, found)
     if (.not. options%has('report')) return
-    call begin_report(json, given%model, given%diagnostics, table_of(options, given))
-    call add_optimum(json, given%model, search%synthesis)
-    call json%end_object()
-    call json%save(options%argument('report'), err)
+    call found%save_report(options%argument('report'), given, err)
     reported = .true.
     call given%fail(err)
   end subroutine work_on_optimum
+
+  !> Write the table and the HDF5 data of the distinct designs, and the data file of the best one.
+  subroutine write_results(options, given, found)
+    type(command_line_type), intent(in) :: options          !< the command line
+    type(data_file_type), intent(inout) :: given            !< the data file; it gets the errors
+    type(kept_search_type), intent(inout) :: found          !< made; its files are closed on return
+    character(len=:), allocatable :: text
+    type(error_type), allocatable :: err
+    logical :: has_hdf5
+
+    call found%write_table(given, err)
+    call tell(err, 'table', found%wanted%table)
+    has_hdf5 = found%has_hdf5()
+    call found%write_hdf5(given, err)
+    if (has_hdf5) call tell(err, 'HDF5 file', found%wanted%hdf5)
+    if (.not. options%has('out') .or. size(found%search%synthesis%optima) == 0) return
+    call found%take_best(given, text)
+    call replace_text(options%argument('out'), text, err)
+    call tell(err, 'best design', options%argument('out'))
+  contains
+    !> Tell where a result is, or add the error.
+    subroutine tell(failure, name, place)
+      type(error_type), allocatable, intent(inout) :: failure   !< allocated if it could not be written; not on return
+      character(len=*), intent(in) :: name                      !< of the result
+      character(len=*), intent(in) :: place                     !< its path; empty where there is none
+
+      if (allocated(failure)) then
+        call given%fail(failure)
+        deallocate (failure)
+      else if (place /= '' .and. place /= standard_output_path .and. .not. options%has('quiet')) then
+        write (error_unit, '(3a)') name, ': ', place
+      end if
+    end subroutine tell
+  end subroutine write_results
 
   !> How many threads make the starts.
   integer function threads_of(options, given) result(threads)

@@ -17,8 +17,7 @@ module mech9_optimum_pictures
   use mech9_terminal_size, only: find_terminal_size
   use mech9_fit_request, only: fit_request_type, read_fit_request
   use mech9_fit_script, only: fit_panel_type, fit_script, fit_terminal_script
-  use mech9_synthesis, only: synthesis_type
-  use mech9_design_motion, only: design_motion_type, new_design_motion
+  use mech9_kept_search, only: kept_search_type
   use mech9_fit_panels, only: append_panels, name_of_objective
   implicit none
   private
@@ -72,32 +71,29 @@ contains
   end subroutine open_pictures
 
   !> Draw all pictures of the best design, and tell where they are. An interrupted program draws none, which would take too long.
-  subroutine draw(self, options, given, synthesis)
+  subroutine draw(self, options, given, found)
     class(optimum_pictures_type), intent(in) :: self            !< the pictures
     type(command_line_type), intent(in) :: options              !< the command line
-    type(data_file_type), intent(inout) :: given                !< the data file; it gets the errors
-    type(synthesis_type), intent(in) :: synthesis               !< with its optima, best first
-    class(design_motion_type), allocatable, target :: motion
+    type(data_file_type), intent(inout), target :: given        !< the data file; it gets the errors
+    type(kept_search_type), intent(inout), target :: found      !< made
     type(error_type), allocatable :: err
 
-    if (asked_to_end() .or. size(synthesis%optima) == 0) return
+    if (asked_to_end() .or. size(found%search%synthesis%optima) == 0) return
     if (size(self%plots) == 0 .and. .not. self%drawings%any_wanted()) return
-    allocate (motion)
-    call new_design_motion(given%variable, synthesis%space%model, synthesis%values_of(1), synthesis%optima(1)%q, motion, err)
+    call found%move_best(given, err)
     if (allocated(err)) then
       call given%fail(err)
       return
     end if
-    call self%draw_plots(given, motion, synthesis, options%has('quiet'))
-    if (self%drawings%any_wanted()) call self%draw_film(given, motion, synthesis, options%has('quiet'))
+    call self%draw_plots(given, found, options%has('quiet'))
+    if (self%drawings%any_wanted()) call self%draw_film(given, found, options%has('quiet'))
   end subroutine draw
 
   !> Draw the plots of targets and result.
-  subroutine draw_plots(self, given, motion, synthesis, quiet)
+  subroutine draw_plots(self, given, found, quiet)
     class(optimum_pictures_type), intent(in) :: self            !< the pictures
     type(data_file_type), intent(inout) :: given                !< the data file; it gets the errors
-    type(design_motion_type), intent(inout), target :: motion   !< of the best design
-    type(synthesis_type), intent(in) :: synthesis               !< with its optima, best first
+    type(kept_search_type), intent(inout), target :: found      !< made, with the motion of the best design
     logical, intent(in) :: quiet                                !< only a picture that could not be made is told
     type(fit_panel_type), allocatable :: panels(:)
     type(error_type), allocatable :: err
@@ -110,7 +106,7 @@ contains
       allocate (panels(0))
       do k = 1, size(self%plots(i)%wanted)
         if (self%plots(i)%wanted(k) .and. .not. allocated(err)) &
-          call append_panels(motion, synthesis, k, name_of_objective(given%model, k), panels, err)
+          call append_panels(found%best, found%search%synthesis, k, name_of_objective(given%model, k), panels, err)
       end do
       said = ''
       is_lacking = .false.
@@ -121,7 +117,7 @@ contains
         call draw_in_terminal(fit_terminal_script(panels, columns, lines), err)
       else
         associate (picture => self%pictures(i)%text)
-          call draw_picture(picture, fit_script(motion%model%mechanism%title, panels, name_of(picture), &
+          call draw_picture(picture, fit_script(found%best%model%mechanism%title, panels, name_of(picture), &
                                                 name_of(script_of_plot(picture))), said, is_lacking, err)
         end associate
       end if
@@ -131,11 +127,10 @@ contains
   end subroutine draw_plots
 
   !> Make sketch and film of the best design, with its targets: places as points of link 1, and poses.
-  subroutine draw_film(self, given, motion, synthesis, quiet)
+  subroutine draw_film(self, given, found, quiet)
     class(optimum_pictures_type), intent(in) :: self            !< the pictures
     type(data_file_type), intent(inout) :: given                !< the data file; it gets the errors
-    type(design_motion_type), intent(inout), target :: motion   !< of the best design
-    type(synthesis_type), intent(in) :: synthesis               !< with its targets
+    type(kept_search_type), intent(inout), target :: found      !< made, with the motion of the best design
     logical, intent(in) :: quiet                                !< nothing is told
     type(picture_requests_type) :: drawings
     type(signal_interruption_type), target :: interruption
@@ -143,15 +138,15 @@ contains
     integer :: i
 
     drawings = self%drawings
-    call motion%show_targets(synthesis, most_targets)
-    do i = 1, min(most_targets, size(synthesis%targets))
-      associate (target => synthesis%targets(i))
+    call found%best%show_targets(found%search%synthesis, most_targets)
+    do i = 1, min(most_targets, size(found%search%synthesis%targets))
+      associate (synthesis => found%search%synthesis, target => found%search%synthesis%targets(i))
         if (target%length > 0.0_wp) &
           call drawings%mark_pose(target%link, synthesis%number_in_objective(i), target%place, target%turn)
       end associate
     end do
-    call motion%make_film(interruption, err)
-    if (.not. allocated(err)) call drawings%save(motion%shown, motion%film, err)
+    call found%best%make_film(interruption, err)
+    if (.not. allocated(err)) call drawings%save(found%best%shown, found%best%film, err)
     if (allocated(err)) then
       call given%fail(err)
     else if (.not. quiet) then

@@ -5,7 +5,6 @@ module mech9_hdf5_record
   use mech9_provenance_layout, only: origin_type, write_origin, set_present_time
   use mech9_hdf5_file, only: hdf5_file_type, hdf5_version
   use mech9_hdf5_reading, only: read_text
-  use mech9_command_line, only: command_line_type
   implicit none
   private
   public :: write_provenance, copy_provenance
@@ -13,9 +12,8 @@ module mech9_hdf5_record
 contains
 
   !> Write the origin of the results, with all data that are needed to compute them again.
-  subroutine write_provenance(file, options, given, created)
+  subroutine write_provenance(file, given, created)
     type(hdf5_file_type), intent(inout) :: file      !< the open file
-    type(command_line_type), intent(in) :: options   !< the command line
     type(data_file_type), intent(in) :: given        !< the data file
     character(len=*), intent(in), optional :: created   !< time when the run began; the present time unless it is given
     type(origin_type) :: origin
@@ -23,10 +21,12 @@ contains
     call set_present_time(origin%began)
     if (present(created)) origin%began = created
     origin%program = program_names(given%model%program)
-    origin%command_line = program_names(given%model%program)//' '//options%line
-    origin%data_file = options%file
+    origin%command_line = program_names(given%model%program)
+    origin%data_file = ''
+    if (allocated(given%command_line)) origin%command_line = origin%command_line//' '//given%command_line
+    if (allocated(given%path)) origin%data_file = given%path
     origin%data = given%document%source%text
-    origin%storage = hdf5_version()
+    origin%storage = trim(hdf5_version())
     call write_origin(file, given%model%mechanism%title, origin)
   end subroutine write_provenance
 

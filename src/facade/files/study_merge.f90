@@ -1,13 +1,11 @@
 !> The files of parts of a study, joined to one file of the whole study.
 module mech9_study_merge
-  use, intrinsic :: iso_fortran_env, only: error_unit
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use mech9_kinds, only: wp, long
   use mech9_text, only: string_type, to_text
-  use mech9_counted, only: counted
   use mech9_error, only: error_type, raise, exit_done, exit_file
   use mech9_version, only: name_and_version
-  use mech9_command_line, only: command_line_type
+  use mech9_kept_files, only: kept_files_type
   use mech9_hdf5_record, only: copy_provenance
   use mech9_table, only: table_type
   use mech9_heading, only: new_heading
@@ -17,7 +15,7 @@ module mech9_study_merge
   use mech9_study_sums, only: study_sums_type
   implicit none
   private
-  public :: merge_studies
+  public :: merge_studies, merged_study_type
 
   !> Runs that are joined at a time.
   integer, parameter :: runs_together = 1024
@@ -29,27 +27,32 @@ module mech9_study_merge
     integer :: files(2) = 0  !< numbers of two files that have it
   end type overlap_type
 
+  !> The runs of a study that stand in files of its parts.
+  type :: merged_study_type
+    integer :: runs = 0             !< of the whole study
+    type(study_sums_type) :: sums   !< counts of the runs that are made
+    type(overlap_type) :: overlap   !< runs that more than one file has
+  end type merged_study_type
+
 contains
 
-  !> Join the runs of several files to the file that --hdf5 names and a table.
-  subroutine merge_studies(options, paths, err)
-    type(command_line_type), intent(in) :: options        !< the command line
+  !> Join the runs of several files to one file and a table. Fail with exit_file where they are not of one study.
+  subroutine merge_studies(program, paths, wanted, merged, err)
+    integer, intent(in) :: program                        !< kinematics or dynamics
     type(string_type), intent(in) :: paths(:)             !< of the files
+    type(kept_files_type), intent(in) :: wanted           !< the HDF5 file and the table of the whole study
+    type(merged_study_type), intent(out) :: merged        !< the runs that the files have
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
     type(study_file_type), allocatable :: files(:)
-    type(study_sums_type) :: sums
-    type(overlap_type) :: overlap
     type(error_type), allocatable :: at_close
     integer :: i
 
     allocate (files(size(paths)))
     call open_files(paths, files, err)
-    if (.not. allocated(err)) call join(options, paths, files, sums, overlap, err)
+    if (.not. allocated(err)) call join(program, paths, files, wanted, merged, err)
     do i = 1, size(files)
       call files(i)%close(at_close)
     end do
-    if (.not. (allocated(err) .or. options%has('quiet'))) &
-      call print_merge(options, paths, files(1)%layout%runs, sums, overlap)
   end subroutine merge_studies
 
   !> Open all files. Fail with exit_file where one is not of the study of the first one.
@@ -75,12 +78,12 @@ contains
   end subroutine open_files
 
   !> Join the runs of all files in the order of their numbers.
-  subroutine join(options, paths, files, sums, overlap, err)
-    type(command_line_type), intent(in) :: options          !< the command line
+  subroutine join(program, paths, files, wanted, merged, err)
+    integer, intent(in) :: program                          !< kinematics or dynamics
     type(string_type), intent(in) :: paths(:)               !< of the files
     type(study_file_type), intent(inout) :: files(:)        !< the files
-    type(study_sums_type), intent(inout) :: sums            !< counts the runs
-    type(overlap_type), intent(out) :: overlap              !< runs that more than one file has
+    type(kept_files_type), intent(in) :: wanted             !< the files of the whole study
+    type(merged_study_type), intent(inout) :: merged        !< gets the runs that the files have
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     type(study_file_type) :: whole
     type(table_type) :: table
@@ -88,20 +91,21 @@ contains
     real(wp), allocatable :: rows(:, :)
     integer :: source(runs_together), first, n, i
 
-    call open_results(options, files(1), whole, table, err)
+    call open_results(program, files(1), wanted, whole, table, err)
     if (allocated(err)) return
+    merged%runs = files(1)%layout%runs
     allocate (rows(size(files(1)%layout%parameters) + size(files(1)%layout%quantities) + 1, runs_together))
-    call sums%begin(0)
+    call merged%sums%begin(0)
     first = 1
-    do while (first <= files(1)%layout%runs .and. .not. allocated(err))
-      n = min(runs_together, files(1)%layout%runs - first + 1)
-      call gather(paths, files, first, rows(:, :n), source(:n), overlap, err)
+    do while (first <= merged%runs .and. .not. allocated(err))
+      n = min(runs_together, merged%runs - first + 1)
+      call gather(paths, files, first, rows(:, :n), source(:n), merged%overlap, err)
       do i = 1, n
         if (allocated(err)) exit
         if (nint(rows(size(rows, 1), i)) == not_made) cycle
-        call count_run(first + i - 1, nint(rows(size(rows, 1), i)), sums)
+        call count_run(first + i - 1, nint(rows(size(rows, 1), i)), merged%sums)
         if (whole%is_open()) call write_whole(files(source(i)), whole, first + i - 1, rows(:, i), err)
-        if (options%has('table') .and. .not. allocated(err)) &
+        if (wanted%table /= '' .and. .not. allocated(err)) &
           call table%write_row([real(first + i - 1, wp), rows(:, i)], err)
       end do
       first = first + n
@@ -143,9 +147,10 @@ contains
   end subroutine read_columns
 
   !> Create the files of the whole study. The HDF5 file gets its name when it is whole.
-  subroutine open_results(options, part, whole, table, err)
-    type(command_line_type), intent(in) :: options        !< the command line
+  subroutine open_results(program, part, wanted, whole, table, err)
+    integer, intent(in) :: program                        !< kinematics or dynamics
     type(study_file_type), intent(inout) :: part          !< the first file of a part
+    type(kept_files_type), intent(in) :: wanted           !< the files of the whole study
     type(study_file_type), intent(inout) :: whole         !< the HDF5 file, if one is wanted
     type(table_type), intent(inout) :: table              !< the table, if one is wanted
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
@@ -154,14 +159,13 @@ contains
 
     layout = part%layout
     layout%part = 1
-    if (options%has('hdf5')) then
-      call whole%create(options%argument('hdf5'), layout, err)
+    if (wanted%hdf5 /= '') then
+      call whole%create(wanted%hdf5, layout, err)
       if (allocated(err)) return
       call copy_provenance(part%file, whole%file)
       if (size(layout%columns) > 0) call whole%copy_columns(part, err)
     end if
-    if (options%has('table') .and. .not. allocated(err)) &
-      call open_table(options%program, options%argument('table'), layout, table, err)
+    if (wanted%table /= '' .and. .not. allocated(err)) call open_table(program, wanted%table, layout, table, err)
     if (allocated(err)) call whole%close(at_close)
   end subroutine open_results
 
@@ -274,29 +278,4 @@ contains
       call sums%add_failure(run, code)
     end if
   end subroutine count_run
-
-  !> Tell which runs the whole study has, which it lacks, and which more than one part had.
-  subroutine print_merge(options, paths, runs, sums, overlap)
-    type(command_line_type), intent(in) :: options     !< the command line
-    type(string_type), intent(in) :: paths(:)          !< of the files
-    integer, intent(in) :: runs                        !< of the whole study
-    type(study_sums_type), intent(in) :: sums          !< counts of the runs
-    type(overlap_type), intent(in) :: overlap          !< runs that more than one file has
-    integer :: i
-
-    write (error_unit, '(a)') counted(sums%made(), 'run')//' of '//to_text(runs)//' from '//counted(size(paths), 'file')
-    do i = 1, sums%n_codes
-      write (error_unit, '(a)') counted(sums%failed(i), 'run')//' failed with exit code '//to_text(sums%codes(i))// &
-        ', the first one is run '//to_text(sums%first_failed(i))
-    end do
-    if (overlap%runs > 0) &
-      write (error_unit, '(a)') 'note: '//counted(overlap%runs, 'run')//' stood in more than one file, with the same numbers; '// &
-      'first of them run '//to_text(overlap%first)//" in '"//paths(overlap%files(1))%text//"' and '"// &
-      paths(overlap%files(2))%text//"'"
-    if (sums%made() < runs) &
-      write (error_unit, '(a)') 'note: '//counted(runs - sums%made(), 'run')// &
-      ' of the study are not made yet; --study --continue makes them'
-    if (options%has('table') .and. options%argument('table') /= '-') write (error_unit, '(2a)') 'table: ', options%argument('table')
-    if (options%has('hdf5')) write (error_unit, '(2a)') 'HDF5 file: ', options%argument('hdf5')
-  end subroutine print_merge
 end module mech9_study_merge

@@ -1,11 +1,8 @@
 !> The files of parts of a search, joined to one file that has the starts of all.
 module mech9_starts_merge
-  use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_kinds, only: wp, long
   use mech9_text, only: string_type, to_text
-  use mech9_counted, only: counted
-  use mech9_error, only: error_type, raise, exit_usage, exit_file
-  use mech9_command_line, only: command_line_type
+  use mech9_error, only: error_type, raise, exit_file
   use mech9_hdf5_record, only: copy_provenance
   use mech9_study_definition, only: tell_difference
   use mech9_search_starts, only: start_type
@@ -13,36 +10,40 @@ module mech9_starts_merge
   use mech9_starts_file, only: starts_file_type
   implicit none
   private
-  public :: merge_searches
+  public :: merge_searches, merged_search_type
+
+  !> The starts of a search that stand in files of its parts.
+  type :: merged_search_type
+    integer :: starts = 0      !< of the whole search
+    integer :: made = 0        !< how many of them the files have
+    integer :: repeated = 0    !< starts that more than one file has
+  end type merged_search_type
 
 contains
 
-  !> Join the starts of several files to the file that --hdf5 names.
-  subroutine merge_searches(options, paths, err)
-    type(command_line_type), intent(in) :: options        !< the command line
+  !> Join the starts of several files to one file. Fail with exit_file where they are not of one search.
+  subroutine merge_searches(paths, whole, merged, err)
     type(string_type), intent(in) :: paths(:)             !< of the files
+    character(len=*), intent(in) :: whole                 !< path of the file of the whole search
+    type(merged_search_type), intent(out) :: merged       !< the starts that the files have
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
     type(starts_file_type), allocatable :: files(:)
     type(error_type), allocatable :: at_close
     type(start_type), allocatable :: starts(:)
-    integer :: i, repeated
+    integer :: i
 
-    if (options%has('table')) then
-      call raise(err, exit_usage, '--merge of a search writes no table, since designs are compared by their data file; leave '// &
-                 '--table out, and give it to --optimize --continue of the whole file')
-      return
-    end if
     allocate (files(size(paths)))
     call open_files(paths, files, err)
     if (.not. allocated(err)) then
       allocate (starts(maxval(files%layout%wanted)))
-      call gather(paths, files, starts, repeated, err)
-      if (.not. allocated(err)) call write_whole(options%argument('hdf5'), files(1), starts, err)
+      call gather(paths, files, starts, merged%repeated, err)
+      if (.not. allocated(err)) call write_whole(whole, files(1), starts, err)
+      merged%starts = size(starts)
+      merged%made = count([(allocated(starts(i)%found), i=1, size(starts))])
     end if
     do i = 1, size(files)
       call files(i)%close(at_close)
     end do
-    if (.not. (allocated(err) .or. options%has('quiet'))) call print_merge(options, size(paths), starts, repeated)
   end subroutine merge_searches
 
   !> Open all files. Fail with exit_file where one is not of the search of the first one.
@@ -131,21 +132,4 @@ contains
     call whole%close(at_close)
     if (.not. allocated(err)) call move_alloc(at_close, err)
   end subroutine write_whole
-
-  !> Tell which starts the whole file has, which it lacks, and which more than one part had.
-  subroutine print_merge(options, n_files, starts, repeated)
-    type(command_line_type), intent(in) :: options     !< the command line
-    integer, intent(in) :: n_files                     !< how many files were joined
-    type(start_type), intent(in) :: starts(:)          !< of the whole search
-    integer, intent(in) :: repeated                    !< starts that more than one file has
-    integer :: i, made
-
-    made = count([(allocated(starts(i)%found), i=1, size(starts))])
-    write (error_unit, '(a)') counted(made, 'start')//' of '//to_text(size(starts))//' from '//counted(n_files, 'file')
-    if (repeated > 0) write (error_unit, '(a)') 'note: '//counted(repeated, 'start')// &
-      ' stood in more than one file, with the same designs'
-    if (made < size(starts)) write (error_unit, '(a)') 'note: '//counted(size(starts) - made, 'start')//' are not made yet'
-    write (error_unit, '(a)') 'note: --optimize --continue '//options%argument('hdf5')//' finds the distinct designs'
-    write (error_unit, '(2a)') 'HDF5 file: ', options%argument('hdf5')
-  end subroutine print_merge
 end module mech9_starts_merge

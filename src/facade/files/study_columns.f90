@@ -13,7 +13,7 @@ module mech9_study_columns
   use mech9_hdf5_series, only: hdf5_series_type
   use mech9_column_layout, only: column_layout_type
   use mech9_scale_layout, only: put_scales, names_of_scales
-  use mech9_hdf5_copying, only: copy_data_sets, extents_of, scales_of, attribute_of
+  use mech9_hdf5_copying, only: copy_data_sets, extents_of, scales_of, read_attribute
   use mech9_study_filling, only: fill_rows
   implicit none
   private
@@ -163,6 +163,7 @@ contains
     integer, allocatable :: extents(:)
     type(string_type), allocatable :: scales(:)
     character(len=scale_length), allocatable :: paths(:)
+    character(len=:), allocatable :: meaning, unit
     integer :: n, i, k
 
     self%runs = runs
@@ -177,9 +178,10 @@ contains
       end do
       ! the last extent is that of the runs
       n = product(extents(:size(extents) - 1))
-      call self%series%add(new_column_set(names(i)%text, [(self%numbers + k, k=1, n)], extents(:size(extents) - 1), &
-                                          attribute_of(file, names(i)%text, 'long_name'), &
-                                          attribute_of(file, names(i)%text, 'units'), paths))
+      call read_attribute(file, names(i)%text, 'long_name', meaning)
+      call read_attribute(file, names(i)%text, 'units', unit)
+      call self%series%add(new_column_set(names(i)%text, [(self%numbers + k, k=1, n)], extents(:size(extents) - 1), meaning, &
+                                          unit, paths))
       self%numbers = self%numbers + n
       deallocate (paths)
     end do
