@@ -6,8 +6,8 @@ module mech9_closing
   use mech9_text, only: string_type, lower
   use mech9_path, only: folder_of
   use mech9_same_file, only: same_file
-  use mech9_diagnostics, only: diagnostics_type, printable
-  use mech9_model, only: model_type
+  use mech9_diagnostics, only: printable
+  use mech9_data_file, only: data_file_type
   use mech9_answer, only: yes_or_no, wants_quotes
   use mech9_draft, only: draft_type, unquoted
   use mech9_draft_text, only: draft_text_type
@@ -58,9 +58,8 @@ contains
   !> Show the errors of the answers, and all answers when the end is reached first.
   subroutine show_all(conversation)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
-    type(model_type) :: model
+    type(data_file_type) :: given
     type(draft_text_type) :: written
-    type(diagnostics_type) :: diagnostics
     type(fault_type), allocatable :: faults(:)
 
     associate (draft => conversation%interview%draft)
@@ -70,9 +69,9 @@ contains
       end if
       conversation%summed_up = .true.
       conversation%topic = 0
-      call read_draft(draft, conversation%draft_path, conversation%program, model, written, diagnostics)
+      call read_draft(draft, conversation%draft_path, conversation%program, given, written)
     end associate
-    call faults_of(diagnostics, written, faults)
+    call faults_of(given%diagnostics, written, faults)
     if (size(faults) == 0) return
     call conversation%say('Not right yet:')
     call show_faults(conversation, faults)

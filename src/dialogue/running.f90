@@ -9,7 +9,7 @@ module mech9_running
   use mech9_system, only: catch_interrupts, asked_to_end
   use mech9_kept_rows, only: kept_rows_type
   use mech9_rows_text, only: all_rows_text, digits_of_summary
-  use mech9_processes, only: processes_type
+  use mech9_kept_study, only: processes_type
   use mech9_session, only: run_file
   use mech9_conversation, only: conversation_type, going, finished
   use mech9_closing, only: write_data_file

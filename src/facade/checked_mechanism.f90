@@ -16,6 +16,7 @@ module mech9_checked_mechanism
   use mech9_document, only: document_type, group_type
   use mech9_document_text, only: text_of_document
   use mech9_design_text, only: text_of_design
+  use mech9_fixed_groups, only: fixed_groups
   use mech9_setting, only: apply_setting
   use mech9_named_number, only: number_place_type, find_number, set_number
   use mech9_lookup, only: has_name, groups_named, get_integers, get_text
@@ -48,6 +49,7 @@ module mech9_checked_mechanism
     procedure :: put_number
     procedure :: number
     procedure :: text
+    procedure :: text_of_fixed
     procedure :: list_files
     procedure :: list_findings
     procedure :: find_error_place
@@ -272,13 +274,11 @@ contains
     type(model_type) :: unused
     type(error_type), allocatable :: err
 
-    if (self%is_read) then
-      diagnostics%sources = self%sources
-      call read_groups(self, program, unused, diagnostics)
-      call fail_as(diagnostics, err, findings)
-    else
-      allocate (findings(0))
-    end if
+    allocate (findings(0))
+    if (.not. self%is_read) return
+    diagnostics%sources = self%sources
+    call read_groups(self, program, unused, diagnostics)
+    call fail_as(diagnostics, err, findings)
   end subroutine list_findings
 
   !> Give a number another value, by the name that --set has for it, such as pair(2).point(1). The mechanism stays as it was where
@@ -386,6 +386,14 @@ contains
     written = ''
     if (self%is_read) call text_of_document(self%document, written)
   end subroutine text
+
+  !> The text of what must not change where code was made for the mechanism; empty where its groups make no sense.
+  subroutine text_of_fixed(self, text)
+    class(checked_mechanism_type), intent(in) :: self        !< the mechanism
+    character(len=:), allocatable, intent(out) :: text       !< a line for each name, under that of its group
+
+    call fixed_groups(self%document, self%sources, text)
+  end subroutine text_of_fixed
 
   !> List the files that the mechanism reads: the data file first, empty where there is none, and those that its groups name.
   subroutine list_files(self, paths)

@@ -5,7 +5,8 @@ module mech9_data_file
   use mech9_text, only: string_type
   use mech9_document, only: document_type
   use mech9_diagnostics, only: diagnostics_type
-  use mech9_parser, only: read_document
+  use mech9_source, only: source_from_text
+  use mech9_parser, only: read_document, parse_document
   use mech9_setting, only: apply_setting
   use mech9_drive_reader, only: files_of_groups
   use mech9_reader, only: read_model
@@ -46,6 +47,8 @@ module mech9_data_file
   contains
     procedure :: open => open_file
     procedure :: read => read_whole
+    procedure :: read_text
+    procedure :: assemble
     procedure :: prepare_variable
     procedure :: check_times
     procedure :: close_run
@@ -93,6 +96,26 @@ contains
     if (self%failed() .and. legible .and. program == kinematics) &
       call judge_choice_of(self%document, self%diagnostics, self%choice)
   end subroutine read_whole
+
+  !> Read the model of a text that has the form of a data file. Errors are kept.
+  subroutine read_text(self, name, text, program)
+    class(data_file_type), intent(inout) :: self    !< a new one
+    character(len=*), intent(in) :: name            !< of the file that the text may become: files that it names are sought beside it
+    character(len=*), intent(in) :: text            !< its groups
+    integer, intent(in) :: program                  !< kinematics or dynamics
+
+    call parse_document(source_from_text(name, text), self%document, self%diagnostics)
+    call read_model(self%document, program, self%model, self%diagnostics)
+  end subroutine read_text
+
+  !> Assemble the mechanism at the start of its run, which begins with that. Fails where it cannot be closed.
+  subroutine assemble(self, err)
+    class(data_file_type), intent(inout) :: self         !< the file, read without errors
+    type(error_type), allocatable, intent(out) :: err    !< allocated if it failed
+
+    allocate (self%run)
+    call self%run%motion%assemble(self%model, err)
+  end subroutine assemble
 
   !> Prepare the model as a function of its parameters.
   subroutine prepare_variable(self)

@@ -2,27 +2,17 @@
 program mech9_special
   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
   use mech9, only: mechanism_type, error_type, read_file
-  use mech9_document, only: document_type
-  use mech9_diagnostics, only: diagnostics_type
-  use mech9_parser, only: read_document
-  use mech9_fixed_groups, only: fixed_groups
   use mech9_made_code, only: write_made_code
   use mech9_system, only: exit_program, take_argument
   implicit none
   type(mechanism_type) :: mechanism
-  type(document_type) :: document
-  type(diagnostics_type) :: diagnostics
   type(error_type), allocatable :: err
-  character(len=:), allocatable :: path, file, groups, told
+  character(len=:), allocatable :: path, file, told
 
   call take_argument(1, path)
   call take_argument(2, file)
   call read_file(path, mechanism, err)
-  if (.not. allocated(err)) then
-    call read_document(path, document, diagnostics)
-    call fixed_groups(document, diagnostics%sources, groups)
-    call write_made_code(mechanism, groups, path(index(path, '/', back=.true.) + 1:), file, told, err)
-  end if
+  if (.not. allocated(err)) call write_made_code(mechanism, path(index(path, '/', back=.true.) + 1:), file, told, err)
   if (allocated(err)) then
     write (error_unit, '(a)') err%message
     call exit_program(err%code)

@@ -62,9 +62,8 @@ contains
     if (options%has('check') .or. options%has('cam') .or. .not. answers_only(options)) &
       call given%check_times(given%model%program == dynamics .or. given%model%request%output%with_forces())
     if (given%failed()) return
-    allocate (given%run)
     call read_picture_requests(options, given, pictures, err)
-    if (.not. allocated(err)) call given%run%motion%assemble(given%model, err)
+    if (.not. allocated(err)) call given%assemble(err)
     if (.not. (allocated(err) .or. answers_only(options))) then
       call given%run%prepare(given%model, err, given%variable, pictures%any_wanted())
     else if (.not. (allocated(err) .or. given%model%is_driven())) then

@@ -7,7 +7,7 @@ module test_drafts
   use mech9_parser, only: parse_document
   use mech9_diagnostics, only: diagnostics_type
   use mech9_grammar, only: item_table
-  use mech9_model, only: model_type
+  use mech9_data_file, only: data_file_type
   use mech9_draft, only: draft_type, unquoted, integer_of
   use mech9_draft_text, only: draft_text_type, write_draft, locate
   use mech9_draft_source, only: draft_from_document
@@ -113,8 +113,7 @@ contains
     type(tester_type), intent(inout) :: tester   !< counts the checks
     type(draft_type) :: draft
     type(draft_text_type) :: written
-    type(model_type) :: model
-    type(diagnostics_type) :: diagnostics
+    type(data_file_type) :: given
     type(fault_type), allocatable :: faults(:)
     integer :: group, entry, i
     logical :: found
@@ -128,8 +127,8 @@ contains
     call tester%is_true(draft%groups(group)%entries(entry)%name == 'moving_point', 'the entry at a byte of the text is found')
     call locate(written, 1, group, entry)
     call tester%is_true(group == 0, 'a comment belongs to no group')
-    call read_draft(draft, 'a.nml', dynamics, model, written, diagnostics)
-    call faults_of(diagnostics, written, faults)
+    call read_draft(draft, 'a.nml', dynamics, given, written)
+    call faults_of(given%diagnostics, written, faults)
     found = .false.
     do i = 1, size(faults)
       if (index(faults(i)%message, 'revolutte') == 0) cycle

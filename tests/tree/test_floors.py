@@ -11,6 +11,15 @@ MOST_FILES = 25            # in one folder: more are hard to find one's way in
 MOST_KINEMATICS = 13       # files of the kinematics, without those of tolerances, that Lagrange's equations depend on, directly and through others
 MOST_OF_SESSION = 10       # floors that the session uses, with its sub-floors: the number only goes down
 FACADE = ('facade', 'mech9')      # the one module that other programs use
+# Floors of the programs, and those between them and the facade that are about data files, results, pictures and words. All other floors
+# below the facade are the engine, which the programs reach through the facade.
+PROGRAMS = ('session', 'dialogue', 'programs')
+OPEN = {'base', 'system', 'input/document', 'drafts', 'output', 'interchange', 'interchange/xml', 'pictures/plots', 'pictures/scene', 'pictures/arrows',
+        'pictures/films', 'terminal', 'session/command', 'descriptions', 'descriptions/motions'}
+# Floors of the engine that programs use all the same: the lists only become shorter. A conversation knows links, pairs and units before
+# there is a mechanism; processes of MPI take the places of submodules of studies and searches.
+ENGINE_OF = {'dialogue': {'structure', 'model'}, 'dialogue/questions': {'structure', 'model', 'input'},
+             'programs/mpi': {'sampling', 'wording', 'studies', 'synthesis', 'searches'}}
 WITHOUT_ONLY = {('user', 'mech9_taylor')}
 
 
@@ -85,6 +94,16 @@ def test_session_uses_few_floors(checks, sources):
     below = set().union(*(uses[floor] for floor in own)) - own
     checks.equal(len(below), MOST_OF_SESSION, 'the session and its sub-floors use as many floors as are counted here: after one less, '
                  f'lower MOST_OF_SESSION ({" ".join(sorted(below))})')
+
+
+def test_programs_reach_the_engine_through_the_facade(checks, sources):
+    uses = used_floors(sources)
+    engine = set(FLOORS[:FLOORS.index('facade')]) - OPEN
+    own = {floor for floor in uses if floor.split('/')[0] in PROGRAMS}
+    checks.true({'session', 'dialogue', 'programs'} <= own and 'simulation' in engine, 'floors of programs and of the engine are told apart')
+    for floor in sorted(own):
+        checks.equal(uses[floor] & engine, ENGINE_OF.get(floor, set()), f'{floor} uses the engine through the facade, but for floors that '
+                     'are listed here: after one less, shorten ENGINE_OF')
 
 
 def test_dynamics_depends_on_little_of_kinematics(checks, sources):

@@ -7,10 +7,10 @@ module mech9_draft_check
   use mech9_item_rows, only: takes_kind
   use mech9_structure, only: structure_type
   use mech9_partition, only: partition_type
-  use mech9_model, only: model_type
+  use mech9_data_file, only: data_file_type
   use mech9_document, only: document_type
   use mech9_parser, only: parse_document
-  use mech9_reader, only: read_model, read_structure_only
+  use mech9_reader, only: read_structure_only
   use mech9_diagnostics, only: diagnostics_type
   use mech9_draft, only: draft_type
   use mech9_draft_text, only: draft_text_type, write_draft, locate
@@ -31,18 +31,15 @@ module mech9_draft_check
 contains
 
   !> Read the mechanism of a draft. It is of use only if there are no errors.
-  subroutine read_draft(draft, path, program, model, written, diagnostics)
+  subroutine read_draft(draft, path, program, given, written)
     type(draft_type), intent(in) :: draft               !< groups and names with their values as text
     character(len=*), intent(in) :: path                !< path of the data file; tables of drives are sought beside it
     integer, intent(in) :: program                      !< kinematics, where each independent coordinate needs a drive, or dynamics
-    type(model_type), intent(out) :: model              !< the model
+    type(data_file_type), intent(inout) :: given        !< a new one; gets the model and the errors
     type(draft_text_type), intent(out) :: written       !< text of the draft, with the place of each entry
-    type(diagnostics_type), intent(out) :: diagnostics  !< gets the errors
-    type(document_type) :: document
 
     call write_draft(draft, '', written)
-    call parse_document(source_from_text(path, written%text), document, diagnostics)
-    call read_model(document, program, model, diagnostics)
+    call given%read_text(path, written%text, program)
   end subroutine read_draft
 
   !> Read the structure of a draft. It is of use only if there are no faults.
@@ -191,7 +188,7 @@ contains
     integer, intent(in) :: place                           !< place among the groups of that name, from 1
     character(len=:), allocatable, intent(out) :: problem  !< messages, a line each; empty: nothing is wrong
     type(draft_type) :: trial
-    type(model_type) :: model
+    type(data_file_type) :: given
     type(structure_type) :: structure
     type(partition_type) :: partition
     type(draft_text_type) :: written
@@ -207,12 +204,13 @@ contains
       end do
       call complete_matrix(trial)
       call read_part(trial, structure, partition, written, diagnostics)
+      call find_faults(diagnostics, written, faults)
     else
       trial = draft
       call complete(trial, group, place)
-      call read_draft(trial, path, dynamics, model, written, diagnostics)
+      call read_draft(trial, path, dynamics, given, written)
+      call find_faults(given%diagnostics, written, faults)
     end if
-    call find_faults(diagnostics, written, faults)
     do i = 1, size(faults)
       if (faults(i)%group /= trial%find(group, place) .or. faults(i)%entry /= trial%find_entry(group, place, name)) cycle
       if (problem /= '') problem = problem//new_line('a')

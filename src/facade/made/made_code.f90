@@ -33,9 +33,8 @@ module mech9_made_code
 contains
 
   !> Write a file with the code for a mechanism. Fails as a run of mech9k would, and with exit_file where the file cannot be written.
-  subroutine write_made_code(mechanism, groups, data_file, path, told, err)
+  subroutine write_made_code(mechanism, data_file, path, told, err)
     type(checked_mechanism_type), intent(in) :: mechanism     !< the mechanism
-    character(len=*), intent(in) :: groups                    !< its groups that must not change (mech9_fixed_groups)
     character(len=*), intent(in) :: data_file                 !< name of its data file
     character(len=*), intent(in) :: path                      !< of the file to write
     character(len=:), allocatable, intent(out) :: told        !< how much of it is made
@@ -44,6 +43,7 @@ contains
     type(plan_type) :: plan
     type(state_type) :: state
     type(lines_type) :: lines
+    character(len=:), allocatable :: groups
     logical, allocatable :: is_fixed(:)
     integer, allocatable :: made(:)
     integer :: b, i, steps
@@ -66,6 +66,7 @@ contains
     end do
     call write_turn_procedures(lines)
     call lines%put('end module mech9_motion_of_one')
+    call mechanism%text_of_fixed(groups)
     call write_submodule(plan, made, is_fixed, groups, data_file, lines)
     call save_text(path, lines%text, err)
     told = to_text(steps)//' of '//counted(plan%n_coordinates, 'pair')//' in '//to_text(size(made))//' of '// &

@@ -9,7 +9,7 @@ module mech9_mpi_program
   use mech9_command_line, only: command_line_type, get_command_words, parse_command_line
   use mech9_system, only: exit_program, leave_quit_alone
   use mech9_session, only: carry_out, asks_for_text
-  use mech9_processes, only: processes_type
+  use mech9_kept_study, only: processes_type
   implicit none
   private
   public :: run_mpi_program
