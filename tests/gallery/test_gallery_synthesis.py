@@ -20,11 +20,11 @@ DWELL_ERROR, SWING = 0.028, 45
 class Search:
     """The search of an example, in a folder of its own."""
 
-    def __init__(self, checks, program, folder, name, plot=True):
+    def __init__(self, checks, program, folder, name, *options, plot=True):
         self.checks, self.program, self.name = checks, program, name
         self.folder = os.path.join(folder, name)
         shutil.copytree(os.path.join(EXAMPLES, name), self.folder)
-        self.search(*(('--plot', 'fit.svg:') if plot else ()))
+        self.search(*options, *(('--plot', 'fit.svg:') if plot else ()))
 
     def search(self, *options, data='', out='best.nml'):
         """Search, with another text of the data file if need be."""
@@ -179,7 +179,8 @@ def test_function_generators(checks, tmp_path, mech9k, name, rule, span, by_prec
 
 def test_spatial_function_generator(checks, tmp_path, mech9k):
     """The rod keeps its length: |A(q1) - B(q8)| = rod, a quadratic equation in tan(q8/2)."""
-    search = Search(checks, mech9k, tmp_path, 'rssr_function')
+    # every other of its 20 starts leads to the best design, the first two among them; tests/documents makes them all
+    search = Search(checks, mech9k, tmp_path, 'rssr_function', '--starts', '4')
     best = search.best
 
     def output(q1, near):
@@ -203,7 +204,8 @@ def test_spatial_function_generator(checks, tmp_path, mech9k):
 
 def test_dwell(checks, tmp_path, mech9k):
     """The output by two closed triangles."""
-    search = Search(checks, mech9k, tmp_path, 'dwell_six_bar')
+    # of its 40 starts the rough design alone leads to the best one; tests/documents makes them all
+    search = Search(checks, mech9k, tmp_path, 'dwell_six_bar', '--starts', '4')
     best = search.best
     made = search.motion()
     q1 = np.radians(made['q1'])

@@ -64,20 +64,52 @@ def kinds(report):
     return [(event['kind'], event['number']) for event in report['events']]
 
 
+def parameters_of(text):
+    """Names and targets of the parameters of a data file."""
+    return re.findall(r"&parameter name='(\w+)', sets='([^']+)'", text)
+
+
+def directions_of(sizes):
+    """Directions in which all parameters change at once, so that four runs are enough for one.
+
+    Derivatives by each parameter, whose largest have these sizes, add about as much to the one along a direction: an error in any of
+    them shows. The factors have no simple ratios, and every other sign is turned in the second direction: two errors do not cancel.
+    """
+    turns, sizes = np.arange(len(sizes)), np.maximum(1.0, sizes)
+    # no step is more than ten times that of the parameter with the largest derivatives
+    factors = (1 - 0.5*(turns*(np.sqrt(5) - 1)/2 % 1))*np.minimum(sizes.max()/sizes, 10.0)
+    return [factors] if len(sizes) < 2 else [factors, factors*(-1.0)**turns]
+
+
+def near_runs(checks, program, folder, plain, text, direction, report, step, **times):
+    """Table and report of the four runs for a difference of fourth order, by the number of steps, in which the same events happen."""
+    near = {}
+    for i in (-2, -1, 1, 2):
+        words = [word for (_, target), factor in zip(parameters_of(text), direction)
+                 for word in ('--set', f'{target}={float(number_of(text, target) + i*step*factor)!r}')]
+        table, other, _ = go(program, folder, plain, *words, **times)
+        checks.true(kinds(other)[:6] == kinds(report)[:6], 'the same events happen', (i, direction))
+        near[i] = table, other
+    return near
+
+
+def slope_of(values, step):
+    """The difference of fourth order of values by the number of steps."""
+    return (8*(values[1] - values[-1]) - values[2] + values[-2])/(12*step)
+
+
 def against_differences(checks, program, folder, text, columns, end, intervals, output=COLUMNS, step=1e-5, tol=2e-7):
     """Derivatives of all columns by all parameters against differences of fourth order of runs in which the same events happen."""
     table, report, _ = go(program, folder, text + output + TIGHT, end=end, intervals=intervals)
-    plain = re.sub('&parameter.*\n', '', text) + output.replace('sensitivities=.true.', 'sensitivities=.false.')
-    for name, target in re.findall(r"&parameter name='(\w+)', sets='([^']+)'", text):
-        near = {}
-        for i in (-2, -1, 1, 2):
-            value = number_of(text, target) + i * step
-            near[i], other, _ = go(program, folder, plain + TIGHT, '--set', f'{target}={value!r}', end=end, intervals=intervals)
-            checks.true(kinds(other)[:6] == kinds(report)[:6], 'the same events happen', name)
+    plain = re.sub('&parameter.*\n', '', text) + output.replace('sensitivities=.true.', 'sensitivities=.false.') + TIGHT
+    by = {column: np.array([table[f'd({column})/d({name})'] for name, _ in parameters_of(text)]) for column in columns}
+    sizes = np.max([np.abs(values).max(axis=1) for values in by.values()], axis=0)
+    for direction in directions_of(sizes):
+        near = near_runs(checks, program, folder, plain, text, direction, report, step, end=end, intervals=intervals)
         for column in columns:
-            slope = (8 * (near[1][column] - near[-1][column]) - near[2][column] + near[-2][column]) / (12 * step)
+            slope = slope_of({i: one[column] for i, (one, _) in near.items()}, step)
             # tolerance: the error of motions, 1e-12 to 1e-11, over the step
-            checks.near(table[f'd({column})/d({name})'], slope, tol, f'{column} by {name}', scale=max(1.0, float(np.abs(slope).max())))
+            checks.near(direction @ by[column], slope, tol, f'{column} along {direction}', scale=max(1.0, float(np.abs(slope).max())))
     return report
 
 
@@ -86,19 +118,18 @@ def quantities_against_differences(checks, program, folder, text, takes, end, in
     asked = ''.join(f"&quantity name='n{i}', of='{take.split()[0]}', take='{take.split()[1]}' /\n" for i, take in enumerate(takes))
     _, report, _ = go(program, folder, text + asked + '&output gradients=.true., energies=.true. /\n' + TIGHT, end=end, intervals=intervals)
     plain = re.sub('&parameter.*\n', '', text) + asked + '&output energies=.true. /\n' + TIGHT
-    for name, target in re.findall(r"&parameter name='(\w+)', sets='([^']+)'", text):
-        near = {}
-        for i in (-2, -1, 1, 2):
-            _, other, _ = go(program, folder, plain, '--set', f'{target}={number_of(text, target) + i * step!r}', end=end, intervals=intervals)
-            checks.true(kinds(other)[:6] == kinds(report)[:6], 'the same events happen', name)
-            near[i] = [one['value'] for one in other['quantities']]
+    by = np.full((len(takes), len(parameters_of(text))), np.nan)
+    for i, take in enumerate(takes):
+        found = {one['parameter']: one['value'] for one in report['quantities'][i]['gradient']}
+        for k, (name, _) in enumerate(parameters_of(text)):
+            if checks.true(found[name] is not None, f'{take} by {name}', 'is not known'):
+                by[i, k] = found[name]
+    for direction in directions_of(np.nan_to_num(np.abs(by)).max(axis=0)):
+        near = near_runs(checks, program, folder, plain, text, direction, report, step, end=end, intervals=intervals)
         for i, take in enumerate(takes):
-            slope = (8 * (near[1][i] - near[-1][i]) - near[2][i] + near[-2][i]) / (12 * step)
-            found = {one['parameter']: one['value'] for one in report['quantities'][i]['gradient']}[name]
-            checks.true(found is not None, f'{take} by {name}', 'is not known')
+            slope = slope_of({k: other['quantities'][i]['value'] for k, (_, other) in near.items()}, step)
             # tolerance: as above
-            if found is not None:
-                checks.near(found, slope, tol, f'{take} by {name}', scale=max(1.0, abs(slope)))
+            checks.near(direction @ by[i], slope, tol, f'{take} along {direction}', scale=max(1.0, abs(slope)))
     return report
 
 

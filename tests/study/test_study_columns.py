@@ -284,7 +284,7 @@ def test_a_process_is_killed_and_the_study_continued(cases, build, mech9k, rank)
 def test_memory_does_not_grow_with_the_number_of_runs(cases, mech9k):
     """The peak of memory of a study whose columns have a hundred times its size is that of a tenth of its runs."""
     peaks = []
-    for runs in (20, 200):
+    for runs in (10, 100):
         text = SLIDER_CRANK.replace('intervals=40', 'intervals=4000').replace('runs=60', f'runs={runs}').replace('high=0.8', 'high=0.5')
         text = text.replace('reactions=.true., drive_forces=.true., poses=.true., conditioning=.true.', 'derivatives=0')
         # the address sanitizer keeps up to 256 MB of freed memory back, unless it is told not to
@@ -293,7 +293,7 @@ def test_memory_does_not_grow_with_the_number_of_runs(cases, mech9k):
         _, status, usage = os.wait4(process.pid, 0)
         cases.checks.equal(status, 0, f'{runs} runs')
         peaks.append(usage.ru_maxrss)
-    # 200 runs have 70 MB of columns
+    # 100 runs have 35 MB of columns
     cases.checks.true(peaks[1] < peaks[0] + 15000, 'memory does not grow with the number of runs', peaks)
     os.remove(cases.path('large.h5'))
 
