@@ -110,6 +110,7 @@ class Sources:
         self.types = {}                      # derived types by unit and name
         self.generics = {}                   # (unit, generic name) to specific names
         self.procedures = []
+        self.bound = {}                      # answers of `bindings`, which are asked for again and again
         for path, text in files:
             self.read(path, text)
 
@@ -287,6 +288,11 @@ class Sources:
 
     def bindings(self, derived, last):
         """The procedures that a type and those that extend it bind to a name, each with the place of the passed object, or None."""
+        if (derived, last) not in self.bound:
+            self.bound[derived, last] = self.find_bindings(derived, last)
+        return self.bound[derived, last]
+
+    def find_bindings(self, derived, last):
         names = [last, *(specific for one in self.ancestors(derived) for specific in one.generics.get(last, []))]
         found = {}
         for binding in names:

@@ -5,6 +5,7 @@ from collections import Counter
 from fortran_calls import WORD, calls_in, closing, divided, lines_of, parts_of, resolved
 
 READ, CHANGE = 'read', 'change'
+WHOLE = re.compile(r'\w*')
 ASSIGNMENT = re.compile(r'^(?:if *\(|where *\(|forall *\()')
 
 
@@ -59,6 +60,7 @@ class Touches:
 
     def __init__(self, sources):
         self.sources, self.known = sources, {}
+        self.lines, self.calls = {}, {}         # statements of procedures, and the calls in them: they are read for each name again
 
     def of(self, procedure, dummy):
         """Pairs of the names of components, and read or change. Changes through an argument of intent(in) are none."""
@@ -75,21 +77,28 @@ class Touches:
 
     def in_body(self, procedure, name):
         found = set()
-        for _, line, aliases in lines_of(procedure):
-            if not re.match(r'^(\w+ *: *)?associate *\(', line):
-                found |= self.in_statement(procedure, name, line, aliases)
+        if procedure not in self.lines:
+            self.lines[procedure] = [
+                (line, aliases, set(WHOLE.findall(line)), [(alias, WHOLE.match(target).group(0)) for level in aliases for alias, target in level.items()])
+                for _, line, aliases in lines_of(procedure) if not re.match(r'^(\w+ *: *)?associate *\(', line)]
+        for at, (line, aliases, words, heads) in enumerate(self.lines[procedure]):
+            if name in words or any(head == name and alias in words for alias, head in heads):
+                found |= self.in_statement(procedure, name, at, line, aliases)
         for inner in procedure.internals.values():
             if name not in inner.locals:
                 found |= self.in_body(inner, name)
         return found
 
-    def in_statement(self, procedure, name, line, aliases):
+    def calls_of(self, procedure, at, line, aliases):
+        """The calls in a statement of a procedure."""
+        if (procedure, at) not in self.calls:
+            self.calls[procedure, at] = list(calls_in(self.sources, procedure, 0, line, aliases))
+        return self.calls[procedure, at]
+
+    def in_statement(self, procedure, name, at, line, aliases):
         found, passed = set(), Counter()
-        names = {name} | {alias for level in aliases for alias, target in level.items() if re.match(rf'{name}\b', target)}
-        if not any(re.search(rf'\b{word}\b', line) for word in names):
-            return found
         unknown = bool(re.search(r'\bcall ', line))
-        for call in calls_in(self.sources, procedure, 0, line, aliases):
+        for call in self.calls_of(procedure, at, line, aliases):
             unknown = False
             for dummy, actual in call.pairs:
                 parts = parts_of(actual)
