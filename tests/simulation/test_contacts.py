@@ -313,6 +313,27 @@ def test_the_frame_does_not_matter(checks, mech9d, tmp_path):
                 'the same motion')
 
 
+@pytest.mark.parametrize(('mu', 'e'), [(0.8, 0.0), (0.3, 0.0), (0.8, 0.5)])
+def test_an_impact_that_brings_all_to_rest(checks, mech9d, tmp_path, mu, e):
+    """A rod falls about its pin with its tip on a floor and rests there; the contact sticks, in whatever plane the rod turns. Its force holds the
+    moment of the weight, F cos b + T sin b = m g cos(b)/2, with the least (F^2 + (T/mu)^2), for the rod at the angle b below the horizontal."""
+    c, s = 0.8, 0.6
+    normal = 0.5*3*G*c*c/(c*c + mu*mu*s*s)
+    for turn in (0.0, 0.3, 1.0, 2.1, -0.7):
+        # all is turned about x by the angle
+        up, axis = f'0,{cos(turn)!r},{sin(turn)!r}', f'0,{-sin(turn)!r},{cos(turn)!r}'
+        text = f"""&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis={axis}, zero=1,0,0 /
+&body link=2, mass=3, centre=0.5,0,0, inertia=0,0.25,0.25,0,0,0 /
+&gravity acceleration=0,{-G*cos(turn)!r},{-G*sin(turn)!r} /
+&point name='P', link=2, position=1,0,0 /
+&contact point='P', origin=0,{-s*cos(turn)!r},{-s*sin(turn)!r}, normal={up}, friction={mu}, restitution={e} /
+""" + start([0.2], [0.0])
+        table, events, _ = go(mech9d, tmp_path, text, 3.0, 1)
+        checks.true('stick' in [event['kind'] for event in events], f'turned by {turn}: it sticks', events)
+        checks.near([table['K1.fn'][-1], table['K1.ft'][-1]], [normal, normal*mu*mu*s/c], 1e-12, f'turned by {turn}: forces', scale=10)
+
+
 def rod(mu, speed):
     """A rod of 2 m at 60 degrees slides on its end. Its angle is that of the direction from the end upwards."""
     angle = radians(60)

@@ -43,6 +43,8 @@ module mech9_contact_equations
     real(wp), allocatable :: slip(:, :)          !< (2,contacts) along the tangents [m/s]
     real(wp), allocatable :: still(:)            !< (contacts) slip up to which a contact of links is at rest [m/s]
     logical :: rubs = .false.                    !< a contact has friction, or is compliant and has a force of its own
+  contains
+    procedure :: allow_change
   end type contact_equations_type
 
   !> The modes of contacts after a meeting, and the impulses in it.
@@ -140,6 +142,18 @@ contains
       end do
     end associate
   end subroutine find_contact_equations
+
+  !> Let contacts of links be at rest up to the round-off of an impact, too. A mechanism that an impact brings to rest has rates of this
+  !> size alone, by which the slip could not be judged.
+  pure subroutine allow_change(self, change)
+    class(contact_equations_type), intent(inout) :: self   !< the equations after the impact
+    real(wp), intent(in) :: change(:)                      !< (independent) what it has added to their rates [rad/s, m/s]
+    integer :: i
+
+    do i = 1, size(self%still)
+      self%still(i) = self%still(i) + at_rest*sum(norm2(self%rows(:, :, i), dim=2)*abs(change(self%free)))
+    end do
+  end subroutine allow_change
 
   !> Find the impulses of an impact. Fails where drives move a coordinate beyond its stop, or links into each other.
   subroutine find_impact(system, contacts, equations, restitution, shock, err)

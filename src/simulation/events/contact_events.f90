@@ -431,8 +431,9 @@ contains
       else
         ! slips are others after an impact
         call find_contact_equations(system, held, contacts%ends(touch), after, err)
-        if (.not. allocated(err)) &
-          call find_pushing(system, contacts%ends(touch), after, at_rest, sliding, outcome, err)
+        if (allocated(err)) return
+        call after%allow_change(system%state%dq(system%plan%independent) - before)
+        call find_pushing(system, contacts%ends(touch), after, at_rest, sliding, outcome, err)
       end if
       if (allocated(err)) return
       outcome%stopped = shock%stopped
