@@ -9,7 +9,8 @@ module mech9_mobility_report
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type
   use mech9_state, only: state_type
-  use mech9_block_solver, only: block_work_type, new_block_work, factorize_block, solve_rates
+  use mech9_block_solver, only: block_work_type, new_block_work, factorize_block
+  use mech9_unit_rates, only: find_unit_rates
   use mech9_generic_position, only: generic_position_type, find_generic_position
   use mech9_frame_motion, only: step_screw
   use mech9_release, only: most_free_coordinates
@@ -146,26 +147,11 @@ contains
     type(plan_type), intent(in) :: plan   !< the plan of the mechanism
     type(state_type), intent(in) :: state   !< position and motion of the mechanism
     type(mobility_report_type), intent(inout) :: report   !< the report
-    type(state_type) :: moving
-    type(block_work_type), allocatable :: work(:)
-    integer :: b, i, k
+    integer :: i
 
-    allocate (report%shares(plan%n_coordinates, size(plan%independent)))
+    call find_unit_rates(plan, state, report%shares)
     allocate (report%moves(plan%n_coordinates), source=.false.)
-    allocate (work(size(plan%blocks)))
-    do b = 1, size(plan%blocks)
-      work(b) = new_block_work(plan%blocks(b))
-      if (plan%blocks(b)%equations > 0) call factorize_block(plan, plan%blocks(b), state, work(b))
-    end do
-    moving = state
     do i = 1, size(plan%independent)
-      k = plan%independent(i)
-      moving%dq = 0.0_wp
-      moving%dq(k) = plan%unit_of(k)
-      do b = 1, size(plan%blocks)
-        call solve_rates(plan, plan%blocks(b), moving, work(b))
-      end do
-      report%shares(:, i) = moving%dq/plan%unit_of
       report%moves = report%moves .or. abs(report%shares(:, i)) > rank_tolerance
     end do
   end subroutine find_shares

@@ -8,6 +8,7 @@ module mech9_model_motion
   use mech9_start_path, only: start_way_type
   use mech9_simulation, only: simulation_type, interruption_type
   use mech9_driven_simulation, only: driven_simulation_type, new_driven_simulation
+  use mech9_still_contacts, only: refuse_still_contacts
   use mech9_free_simulation, only: free_simulation_type, new_free_simulation
   use mech9_accuracy, only: find_accuracy
   use mech9_explained_assembly, only: assemble_model
@@ -54,6 +55,8 @@ contains
     type(free_simulation_type), allocatable :: free
 
     call self%close()
+    call refuse_still_contacts(model, self%plan, self%start, err)
+    if (allocated(err)) return
     if (model%is_driven()) then
       allocate (driven)
       call new_driven_simulation(model, self%plan, self%start, driven, pictures, model%program == dynamics)

@@ -6,7 +6,8 @@ module mech9_simulation_failures
     failure_lost_link, failure_no_initial_position, failure_singular_start_block, failure_driven_dead_point, &
     failure_gimbal_lock, failure_lost_angles, failure_angles_sensitivity, failure_loaded_lock, &
     failure_singular_passing, failure_many_events, failure_unheld_stop, failure_stop_passed, &
-    failure_self_locking, failure_friction_sensitivity, failure_contact_passed, last_simulation_failure
+    failure_self_locking, failure_friction_sensitivity, failure_contact_passed, failure_contact_still, &
+    last_simulation_failure
 
   !> A motion is to advance before its start.
   integer, parameter :: failure_not_started = 1001
@@ -56,5 +57,7 @@ module mech9_simulation_failures
   !> A driven motion moves links into each other at a contact: number (of the contact), values (the gap at t_stop), t (of the passing), t_stop
   !> (of the position behind it).
   integer, parameter :: failure_contact_passed = 1020
-  integer, parameter :: last_simulation_failure = failure_contact_passed
+  !> The links of a contact never move against each other: number (of the contact).
+  integer, parameter :: failure_contact_still = 1021
+  integer, parameter :: last_simulation_failure = failure_contact_still
 end module mech9_simulation_failures

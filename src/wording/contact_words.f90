@@ -6,7 +6,7 @@ module mech9_contact_words
   use mech9_integration_failures, only: failure_contact_paradox, failure_cornered_contact, failure_shared_contact
   use mech9_event_failures, only: failure_contact_start, failure_contact_violated, failure_undecided_contact, &
     failure_contact_behind
-  use mech9_simulation_failures, only: failure_contact_passed
+  use mech9_simulation_failures, only: failure_contact_passed, failure_contact_still
   implicit none
   private
   public :: explain_contact_failure
@@ -35,6 +35,9 @@ contains
       text = 'the ball of contact '//to_text(failure%number)//' comes behind its path at t = '//to_text(failure%t, 10)// &
              ' s, round one of its ends: it is '//trim(length_in_words(failure, -failure%values(1, 1), 4))// &
              ' within the surface. Make the path longer, or close it'
+    case (failure_contact_still)
+      text = 'the links of contact '//to_text(failure%number)//' never move against each other: the pairs between them stand '// &
+             'still. Name another link or point, or leave the contact out'
     case (failure_contact_paradox)
       text = 'the friction of contact '//to_text(failure%number)//' has no solution from t = '//to_text(failure%t, 10)// &
              ' s on (the paradox of Painleve): its coefficient is '//to_text(failure%values(1, 1), 8)//', and from '// &

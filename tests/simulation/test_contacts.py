@@ -411,3 +411,40 @@ def test_bad_groups_are_told(checks, mech9d, tmp_path, items, message):
     point = '' if 'point=' in items else "point='C', "
     _, _, told = go(mech9d, tmp_path, DISC + WEIGHT + start([0, 0.05, 0], [0, 0, 0]) + f'&contact {point}{items} /\n', 1, code=3)
     checks.true(message in told, 'the message', told)
+
+
+STILL = {'drive': ("&structure cq=1,2 /\n&drive coordinate=2, kind='polynomial', coefficients=0.1 /\n"
+                   "&pair coordinate=1, links=1,2, kind='prismatic', axis=0,0,1 /\n"
+                   "&pair coordinate=2, links=2,3, kind='prismatic', axis=0,0,1 /\n"
+                   "&contact point='C', link=2, origin=0,0,-0.1 /\n"),
+         'chain': ("&structure cq=1 /\n&pair coordinate=1, links=1,2, kind='revolute', axis=0,1,0 /\n"
+                   "&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point=1,0,0 /\n"
+                   "&pair coordinate=3, links=2,3, kind='revolute', axis=1,0,0, point=1,1,0 /\n"
+                   "&contact point='C', link=2, origin=0,0,-0.1 /\n")}
+
+
+@pytest.mark.parametrize('kind', STILL)
+def test_links_that_never_move_against_each_other(checks, mech9d, tmp_path, kind):
+    """A drive or a chain holds the pair between the links; the drive may move, or the surface belong to the frame."""
+    text = STILL[kind] + "&initial coordinate=1, position=0, velocity=0 /\n&body link=3, mass=1, centre=0.2,0,0 /\n&point name='C', link=3, position=0,0,0 /\n" + WEIGHT
+    _, _, told = go(mech9d, tmp_path, text, 0.05, code=3)
+    checks.true('links of contact 1 never move against each other' in told, 'told', told)
+    for old, new in (('link=2, origin=0,0,-0.1', 'origin=0,0,-9'), ('coefficients=0.1', 'coefficients=0.1,0.01')):
+        if old in text:
+            go(mech9d, tmp_path, text.replace(old, new), 0.05)
+
+
+def test_a_dead_point_at_the_start(checks, mech9d, tmp_path):
+    """The slider of a crank stands still at the dead point where the motion begins, and moves against its wall afterwards."""
+    text = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point=0.2,0,0 /
+&pair coordinate=3, links=3,4, kind='revolute', axis=0,0,1, point=0.7,0,0 /
+&pair coordinate=4, links=1,4, kind='prismatic', axis=-1,0,0, point=0.7,0,0 /
+&body link=2, mass=1, inertia=0.01,0.01,0.01,0,0,0 /
+&point name='P', link=4, position=0.7,0,0 /
+&contact point='P', normal=1,0,0, origin=0.35,0,0 /
+""" + start([0, 0, 0, 0], [1])
+    table, events, _ = go(mech9d, tmp_path, text, 4.0)
+    checks.near(table['K1.gap'][0], 0.35, 1e-12, 'gap at the start')
+    checks.equal(kinds(events)[:1], [('impact', 1)], 'the slider hits the wall')
