@@ -70,12 +70,23 @@ class Build:
         return any(os.access(os.path.join(folder, name), os.X_OK) for folder in (self.bin, self.tests))
 
 
-@pytest.fixture(scope='session')
-def build(pytestconfig):
-    folder = pytestconfig.getoption('--build') or os.environ.get('MECH9_BUILD') or os.path.join(TREE, 'build', 'debug')
+def build_of(config):
+    """The build that is tested."""
+    folder = config.getoption('--build') or os.environ.get('MECH9_BUILD') or os.path.join(TREE, 'build', 'debug')
     if not os.path.exists(os.path.join(folder, 'CMakeCache.txt')):
         pytest.exit(f'{folder} is no build folder; make one by tests/run, or name one by --build', 2)
     return Build(folder)
+
+
+def pytest_collection_modifyitems(config, items):
+    """Tests with the mark `without_sanitizers` are made in the other builds alone."""
+    if any(item.get_closest_marker('without_sanitizers') for item in items) and build_of(config).kind == 'Sanitize':
+        items[:] = [item for item in items if not item.get_closest_marker('without_sanitizers')]
+
+
+@pytest.fixture(scope='session')
+def build(pytestconfig):
+    return build_of(pytestconfig)
 
 
 @pytest.fixture(scope='session')

@@ -206,6 +206,7 @@ def killed(cases, command, whole, why, victim=None):
     check.true(partly > 0, f'{why}: one was killed in the middle')
 
 
+@pytest.mark.without_sanitizers
 def test_killed_studies_are_continued_with_the_same_bits(cases, mech9k):
     long_study(cases, mech9k, SLIDER_CRANK, 'long')
     killed(cases, [mech9k], cases.path('whole_long.h5'), 'killed')
@@ -281,6 +282,7 @@ def test_a_process_is_killed_and_the_study_continued(cases, build, mech9k, rank)
     killed(cases, [mpirun, '-n', '2', '--oversubscribe', program_mpi], cases.path('whole_long.h5'), f'rank {rank} killed', kill_rank)
 
 
+@pytest.mark.without_sanitizers
 def test_memory_does_not_grow_with_the_number_of_runs(cases, mech9k):
     """The peak of memory of a study whose columns have a hundred times its size is that of a tenth of its runs."""
     peaks = []

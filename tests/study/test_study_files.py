@@ -100,6 +100,7 @@ def test_data_sets_are_the_columns_of_the_table(cases, build, name, text, names)
         check.true(all(opened[name].dims == ('run',) for name, group, _ in names if group == 'quantities/'), 'xarray knows the dimension')
 
 
+@pytest.mark.without_sanitizers
 def test_killed_studies_are_continued_with_the_same_bits(cases, mech9k):
     """Killed at random moments, several times one after the other, then continued: the bits of an undisturbed study. At each moment
     a run is whole in the file, or not made."""

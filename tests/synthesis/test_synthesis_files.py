@@ -117,6 +117,7 @@ def test_starts_that_the_file_has_are_not_made_again(cases):
     check.true(1e-6 not in read_table(text_of(cases.path('changed.dat')))['value'], 'a design whose motion has another value is left out')
 
 
+@pytest.mark.without_sanitizers
 def test_killed_searches_are_continued_with_the_same_bits(cases):
     """Killed at random moments, several times one after the other, then continued: the bits of an undisturbed search. At each moment
     a start is whole in the file, or not made."""
