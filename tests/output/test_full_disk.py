@@ -14,7 +14,7 @@ from mech9_cases import TREE
 FILE, DONE = 8, 0
 SIZES = [*range(8, 72, 8), *range(72, 128, 4), 160, 200, 4000]      # kB; the last one is enough for all
 EXAMPLES = os.path.join(TREE, 'examples')
-SEARCH = '--optimize --out best.nml --hdf5 r.h5 --set optimum.starts=12'
+SEARCH = '--optimize --out best.nml --hdf5 r.h5 --set optimum.starts=4'
 AGAIN = SEARCH.replace('--hdf5', '--continue')
 # each run makes files of several kinds
 RUNS = {

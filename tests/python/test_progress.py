@@ -18,9 +18,9 @@ def runs_that_take_some_seconds(mech9, four_bar):
     studied = four_bar.copy()
     studied.add('quantity', name='top', of='P.y', take='max')
     return {
-        'kinematics': lambda **words: four_bar.kinematics(intervals=400000, **words),
-        'dynamics': lambda **words: mech9.read(SWING).dynamics(end=3000, intervals=3000, **words),
-        'study': lambda **words: studied.study(**{'pair(2).point(1)': np.linspace(0.25, 0.35, 4000)}, **words),
+        'kinematics': lambda **words: four_bar.kinematics(intervals=300000, **words),
+        'dynamics': lambda **words: mech9.read(SWING).dynamics(end=1800, intervals=1800, **words),
+        'study': lambda **words: studied.study(**{'pair(2).point(1)': np.linspace(0.25, 0.35, 1500)}, **words),
     }
 
 

@@ -111,7 +111,9 @@ def stroke_and_transmission(x):
 def test_largest_swing_with_transmission_angles(cases, method):
     """The largest swing of a rocker with transmission angles of 40 degrees and more. Swing and angles have closed forms."""
     names = ('crank', 'coupler', 'rocker')
-    text = (ROUGH + QUANTITIES + STROKE + TRANSMISSION).replace('starts=6', f"starts=2, method='{method}'")
+    # the method of moving asymptotes goes a long way for each start
+    starts = 1 if method == 'mma' else 2
+    text = (ROUGH + QUANTITIES + STROKE + TRANSMISSION).replace('starts=6', f"starts={starts}, method='{method}'")
     designs, _, _ = cases.search(text, f'transmission {method}')
     x = np.array([designs[name][0] for name in names])
     swing, cosines = stroke_and_transmission(x)
