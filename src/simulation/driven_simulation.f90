@@ -19,6 +19,7 @@ module mech9_driven_simulation
   use mech9_generalized_forces, only: show_state
   use mech9_energy, only: kinetic_energy, potential_energy
   use mech9_stop_contacts, only: stop_contacts_type, find_contacts
+  use mech9_clear_stops, only: clear_stops_type
   use mech9_driven_stops, only: check_stops
   use mech9_driven_frictions, only: driven_frictions_type
   use mech9_simulation, only: simulation_type, simulation_statistics_type, standing_type
@@ -35,6 +36,7 @@ module mech9_driven_simulation
     class(dynamics_plan_type), allocatable, private :: dynamics  !< made when energies are asked for first
     type(motion_view_type), allocatable, private :: view         !< of the present state, as loads see it
     type(stop_contacts_type), private :: contacts                !< ends of stops, with the motion at the last output
+    type(clear_stops_type), private :: clear                     !< coordinates far from them
     logical, private :: watches_ends = .false.                   !< it has rigid ends, which it must not pass
     type(short_ways_type), private :: unseen                     !< ways between looks at rigid ends
     class(driven_frictions_type), allocatable :: frictions       !< not allocated: there are none, or no forces are requested
@@ -118,6 +120,7 @@ contains
     if (self%watches_ends) then
       call self%contacts%note(self%model%mechanism, self%plan, self%driven%state)
       call check_stops(self%model, self%plan, self%angles%held%drives, self%driven, t, self%contacts, err)
+      call self%clear%begin(self%contacts, self%plan, self%driven%state)
     end if
     if (allocated(self%frictions) .and. .not. allocated(err)) call find_frictions(self, err)
   end subroutine begin
@@ -142,12 +145,25 @@ contains
         if (allocated(err)) return
         if (reached) exit
       end do
-      if (self%watches_ends) &
-        call check_stops(self%model, self%plan, self%angles%held%drives, self%driven, before, self%contacts, err)
+      if (self%watches_ends) call pass_ends(self, before, err)
       if (allocated(err) .or. .not. abs(t - next) > 0.0_wp) exit
     end do
     if (allocated(self%frictions) .and. .not. allocated(err)) call find_frictions(self, err)
   end subroutine go_to
+
+  !> Check that no rigid end was passed since the last position.
+  subroutine pass_ends(self, before, err)
+    class(driven_simulation_type), intent(inout) :: self   !< the simulation
+    real(wp), intent(in) :: before                         !< time of the last position [s]
+    type(error_type), allocatable, intent(out) :: err      !< allocated if one was passed
+    logical :: clear
+
+    call self%clear%go_on(self%driven%state, self%driven%state%t - before, clear)
+    if (clear) return
+    call self%clear%recall(self%contacts)
+    call check_stops(self%model, self%plan, self%angles%held%drives, self%driven, before, self%contacts, err)
+    call self%clear%renew(self%contacts, self%plan, self%driven%state)
+  end subroutine pass_ends
 
   !> Go on by a way within which no drive moves far, and the motion of the others is known well by its ends.
   subroutine stride(self, t, from, to, at_joint, err)

@@ -104,6 +104,25 @@ def test_a_drive_that_swings_passes_a_stop(checks, mech9k, mech9d, tmp_path, amp
         checks.near(time, asin(0.999)/frequency, 1e-9, 'first passing', scale=1)
 
 
+@pytest.mark.parametrize(('intervals', 'part'), [(1000, 0.99999), (1000, 0.6), (30000, 0.9999999)])
+def test_a_drive_that_swings_passes_a_stop_between_dense_outputs(checks, mech9k, tmp_path, intervals, part):
+    """An end at a part of the amplitude is passed at the first top, though no output lies behind it, and an end on the other side is clear until
+    then; the rows before are kept. The motion is slow at first, where thousands of positions are far from both ends."""
+    rate, first = 10.0, 0.5*pi
+    text = f"""&mechanism title='a drive that swings' /
+&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
+&point name='P', link=2, position=1,0,0 /
+&drive coordinate=1, kind='harmonic', amplitude=0.5, angular_frequency={rate!r}, phase={-first!r} /
+&stop coordinate=1, low={-0.5 - 1e-3!r}, high={0.5*part!r} /
+"""
+    table, _, told = go(mech9k, tmp_path, text, 3.0, intervals, code=6)
+    passed = (first + asin(part))/rate
+    # tolerance: near the top a round-off of the coordinate moves the time by the square root of it
+    checks.near(float(re.search(r'stop 1 at .* m at t = (\S+) s: at', told)[1]), passed, 1e-9, 'first passing')
+    checks.equal(len(table['t']), 1 + int(passed/3.0*intervals), 'all rows before, and none behind')
+
+
 def test_outputs_do_not_matter(checks, mech9d, tmp_path):
     """The same events, bit by bit, with 1 and with 1000 outputs."""
     stop = SLIDER + "&stop coordinate=1, low=0, restitution=0.8 /\n"
