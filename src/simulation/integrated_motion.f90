@@ -4,7 +4,7 @@ module mech9_integrated_motion
   use mech9_integration_tolerances, only: worthwhile_improvement
   use mech9_simulation_tolerances, only: doubtful_conditioning
   use mech9_error, only: error_type, raise, exit_singular, exit_integrator
-  use mech9_simulation_failures, only: failure_angles_sensitivity, failure_many_events, failure_unheld_stop
+  use mech9_simulation_failures, only: failure_many_events, failure_unheld_stop
   use mech9_variable_model, only: variable_model_type
   use mech9_partition, only: partition_type
   use mech9_block_solver, only: work_count_type, work_of
@@ -17,7 +17,8 @@ module mech9_integrated_motion
   use mech9_motion_system, only: motion_system_type, free_system
   use mech9_joint_passing, only: pass_law_joint => pass_joint
   use mech9_ball_angles, only: ball_angles_type
-  use mech9_other_angles, only: take_angles, show_in_angles, set_in_partition
+  use mech9_other_angles, only: take_angles, show_in_angles, set_in_partition, refuse_angles, refuse_parameters, &
+    hand_on_sensitivity
   use mech9_dense_output, only: dense_output_type
   use mech9_limit_watch, only: limit_watch_type
   use mech9_stop_contacts, only: stop_contacts_type
@@ -50,6 +51,8 @@ module mech9_integrated_motion
     real(wp), allocatable :: heat(:)              !< energy that each friction has taken up to there [J]
     real(wp), allocatable :: heat_before(:)       !< up to the start of the last step [J]
     type(event_variation_type), allocatable, private :: passage   !< derivatives at the present event; not allocated: none are integrated
+    real(wp) :: log_volume = 0.0_wp               !< sum of logarithms of what the volume of directions was multiplied by where coordinates
+                                                  !< were changed
     integer :: systems = 0                        !< how many systems in other coordinates there were before the present one
     real(wp) :: look_below = doubtful_conditioning             !< conditioning at which other coordinates are looked for
     type(integration_statistics_type), private :: before   !< of the integrators before the present one
@@ -96,7 +99,7 @@ contains
     class(variable_model_type), intent(inout), target :: variable      !< the model as a function of its parameters; outlives it
     type(error_type), allocatable, intent(out) :: err                  !< allocated if it failed
 
-    call refuse_angles(self%angles, self%t, err)
+    call refuse_parameters(self%system%model, self%angles, self%t, err)
     if (allocated(err)) return
     self%variable => variable
     call self%system%begin_sensitivity(variable, err)
@@ -131,7 +134,8 @@ contains
     call take_partition(self, self%system%partition%in_same_order(independent), wanted, other, angles, made, err)
     if (made) changed = other%conditioning() >= worthwhile_improvement*self%system%conditioning()
     if (changed) then
-      call hand_on_sensitivity(self, angles, other, err)
+      if (allocated(self%system%sensitivity)) &
+        call hand_on_sensitivity(self%system, self%angles, angles, self%variable, other, self%log_volume, err)
       self%angles = angles
       call replace_system(self, other)
       if (.not. allocated(err)) call self%begin(err)
@@ -147,33 +151,6 @@ contains
 
     self%look_below = self%system%conditioning()/worthwhile_improvement
   end subroutine look_when_worse
-
-  !> Let another system go on with the derivatives by parameters, if there are any. Fails where it moves in other angles than those
-  !> of the data file.
-  subroutine hand_on_sensitivity(self, angles, other, err)
-    class(integrated_motion_type), intent(inout) :: self     !< the motion
-    type(ball_angles_type), intent(in) :: angles             !< of ball joints, in the other system
-    type(motion_system_type), intent(inout) :: other         !< in other coordinates, with its motion
-    type(error_type), allocatable, intent(out) :: err        !< allocated if it failed
-
-    if (.not. allocated(self%system%sensitivity)) return
-    call refuse_angles(angles, self%t, err)
-    if (.not. allocated(err)) call self%system%show_sensitivity(err)
-    if (.not. allocated(err)) call other%begin_sensitivity(self%variable, err, self%system%sensitivity%motion%q, &
-                                                           self%system%sensitivity%motors(:, :, 0), &
-                                                           self%system%sensitivity%motion%held)
-  end subroutine hand_on_sensitivity
-
-  !> Fail because derivatives by parameters are not known in other angles than those of the data file.
-  subroutine refuse_angles(angles, t, err)
-    type(ball_angles_type), intent(in) :: angles             !< of ball joints
-    real(wp), intent(in) :: t                                !< time [s]
-    type(error_type), allocatable, intent(out) :: err        !< allocated where there are other angles
-
-    if (.not. angles%in_use()) return
-    call raise(err, exit_singular, failure_angles_sensitivity)
-    err%failure%t = t
-  end subroutine refuse_angles
 
   !> Make the system with another partition of the coordinates, at the present state. What belongs to frames and blocks that do not
   !> change is copied. The system is not made where these coordinates cannot serve, or the change is not worthwhile.
@@ -228,8 +205,9 @@ contains
     call other%make_room()
     call take_angles(self%system, self%angles, angles, other, failure)
     changed = .not. (gives_up(failure, err) .or. angles%move_as(self%angles))
-    if (changed .and. allocated(self%system%sensitivity)) call refuse_angles(angles, self%t, err)
     if (changed) then
+      if (allocated(self%system%sensitivity)) &
+        call hand_on_sensitivity(self%system, self%angles, angles, self%variable, other, self%log_volume, err)
       self%angles = angles
       call replace_system(self, other)
       if (.not. allocated(err)) call self%begin(err)

@@ -4,6 +4,7 @@ module test_three_turns
   use mech9_random, only: random_type
   use mech9_rotation, only: combine, cross, about_z
   use mech9_three_turns, only: three_turns_type, swing_type, heading_type, set_three_turns, substitute_turns, cyclic
+  use mech9_varied_turns, only: carry_changes
   use mech9_random_geometry, only: random_vector, random_unit
   use mech9_testing, only: tester_type
   implicit none
@@ -22,6 +23,7 @@ contains
     if (test%runs('common_form')) call common_form(test)
     if (test%runs('axes_not_at_right_angles')) call axes_not_at_right_angles(test)
     if (test%runs('one_motion_in_two_triples')) call one_motion_in_two_triples(test)
+    if (test%runs('changes_in_two_triples')) call changes_in_two_triples(test)
     if (test%runs('limits_in_lock')) call limits_in_lock(test)
     if (test%runs('way_past_the_lock')) call way_past_the_lock(test)
     if (test%runs('way_through_the_lock')) call way_through_the_lock(test)
@@ -173,6 +175,61 @@ contains
       call test%near(maxval(abs(dda - ddq)), 0.0_wp, limit, 'accelerations that are carried there and back are the same')
     end do
   end subroutine one_motion_in_two_triples
+
+  !> Changes of a motion in two triples: those of time are rates and accelerations; others are differences of neighbouring motions.
+  subroutine changes_in_two_triples(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    real(wp), parameter :: step = 1.0e-5_wp
+    type(random_type) :: random
+    type(three_turns_type) :: given, other
+    real(wp) :: q(3), dq(3), ddq(3), before(3, 3, 3), there(3, 0:2), beside(3, 0:2, -1:1), changes(2, 0:1, 3), wanted(3, 0:1), limit
+    logical :: fits
+    integer :: i, k
+
+    do i = 1, 50
+      call make_before(random, before)
+      call set_three_turns(before, [1.0_wp, -1.0_wp, -1.0_wp], random_vector(random), 1.0e-11_wp, given, fits)
+      other = substitute_turns(given)
+      q = random_vector(random)*3.0_wp
+      dq = random_vector(random)
+      ddq = random_vector(random)
+      call substitute(given, other, q, dq, ddq, there)
+      changes(1, 0, :) = dq
+      changes(1, 1, :) = ddq
+      changes(2, 0, :) = random_vector(random)
+      changes(2, 1, :) = random_vector(random)
+      do k = -1, 1, 2
+        call substitute(given, other, q + k*step*changes(2, 0, :), dq + k*step*changes(2, 1, :), ddq, beside(:, :, k))
+      end do
+      wanted = (beside(:, 0:1, 1) - beside(:, 0:1, -1))/(2.0_wp*step)
+      call carry_changes(given, reshape([q, dq], [3, 2]), other, there(:, 0:1), changes)
+      limit = (given%margin(q(2))*other%margin(there(2, 0)))**3
+      call test%near(maxval(abs(changes(1, 0, :) - there(:, 1))), 0.0_wp, round_off/limit, 'changes in time are rates')
+      call test%near(maxval(abs(changes(1, 1, :) - there(:, 2))), 0.0_wp, round_off/limit, 'their rates are accelerations')
+      ! the difference has errors of step**2 times third derivatives, and of round-off over the step
+      limit = 1.0e-9_wp/limit**2
+      call test%near(maxval(abs(changes(2, 0, :) - wanted(:, 0))), 0.0_wp, limit, 'changes of angles are differences')
+      call test%near(maxval(abs(changes(2, 1, :) - wanted(:, 1))), 0.0_wp, limit, 'changes of rates are differences')
+      call carry_changes(other, there(:, 0:1), given, reshape([q, dq], [3, 2]), changes)
+      call test%near(maxval(abs(changes(1, 0, :) - dq)), 0.0_wp, round_off/sqrt(1.0e-9_wp/limit), 'there and back')
+    end do
+  end subroutine changes_in_two_triples
+
+  !> A motion in the angles of another triple: its coordinates, rates and accelerations.
+  subroutine substitute(given, other, q, dq, ddq, there)
+    type(three_turns_type), intent(in) :: given   !< the triple
+    type(three_turns_type), intent(in) :: other   !< the other triple
+    real(wp), intent(in) :: q(3)                  !< coordinates [rad]
+    real(wp), intent(in) :: dq(3)                 !< rates [rad/s]
+    real(wp), intent(in) :: ddq(3)                !< accelerations [rad/s^2]
+    real(wp), intent(out) :: there(3, 0:2)        !< the same of the other triple
+    type(swing_type) :: motion
+    type(heading_type) :: heading
+
+    motion = given%swing(q, dq, ddq)
+    call other%continue_heading(motion, 0.0_wp, heading)
+    call other%coordinates(motion, heading, 0.0_wp, there(:, 0), there(:, 1), there(:, 2))
+  end subroutine substitute
 
   !> In gimbal lock itself, rates and accelerations are those of a motion that goes through with smooth coordinates.
   subroutine limits_in_lock(test)

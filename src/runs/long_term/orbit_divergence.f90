@@ -4,12 +4,13 @@
 !> directions along single numbers of the state, apart from the directions that are integrated, so that the determinant of these can be
 !> held against it (Liouville's formula). Steps are integrated by Gauss's formula: with four points on the motion itself, or with two on the
 !> polynomial of fifth degree through both ends of the step, which costs much less.
-!> A change of independent coordinates, or an event, multiplies the volume at once. This factor is the determinant of the integrated
-!> directions behind it over the one before it; its logarithm is added.
+!> A change of independent coordinates, or of the angles of a ball joint, or an event, multiplies the volume at once. This factor is the
+!> determinant of the integrated directions behind it over the one before it; its logarithm is added.
 module mech9_orbit_divergence
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
-  use mech9_lapack, only: dgetrf
+  use mech9_log_determinant, only: log_determinant
+  use mech9_other_angles, only: take_shown, take_shown_changes
   use mech9_hermite, only: hermite_type, build_hermite
   use mech9_expectation, only: expectation_type
   use mech9_free_simulation, only: free_simulation_type
@@ -42,6 +43,8 @@ module mech9_orbit_divergence
     real(wp), allocatable, private :: changes(:, :, :)   !< (directions,0:1,M) of all coordinates at the end of the last step
     real(wp), allocatable, private :: of_motors(:, :)    !< (directions,motors) of the motors there
     integer, private :: plans = 0                        !< how often the plan had changed there
+    real(wp), private :: log_changed = 0.0_wp            !< what these changes had added to the logarithm of the volume
+    logical, allocatable, private :: replaced(:)         !< (ball joints) other angles moved them there
     real(wp), allocatable, private :: motion(:, :)       !< (M,0:2) coordinates, rates and accelerations there
     real(wp), allocatable, private :: states(:)          !< (motors) of motors there
   contains
@@ -50,6 +53,7 @@ module mech9_orbit_divergence
     procedure :: add_step
     procedure :: pass
     procedure :: log_determinant_here
+    procedure, private :: volume_in
   end type orbit_divergence_type
 
 contains
@@ -60,12 +64,15 @@ contains
     type(free_simulation_type), intent(inout) :: simulation     !< the motion, started, with as many directions as the state has numbers
     integer, intent(in) :: motors(:)                            !< numbers of the motors with a state
     type(error_type), allocatable, intent(out) :: err           !< allocated if the motion failed
-    real(wp) :: from, to, end
+    real(wp) :: from, to, end, at_start, at_end
     logical :: at_joint
 
     end = simulation%end
     to = simulation%motion%t
+    at_start = 0.0_wp
+    at_end = 0.0_wp
     call self%begin(simulation, motors, err)
+    if (self%is_known .and. .not. allocated(err)) call find_shown_volume(self, simulation, at_start, err)
     do while (abs(end - to) > 0.0_wp .and. .not. allocated(err))
       call simulation%stride(end, from, to, at_joint, err)
       if (allocated(err)) return
@@ -79,13 +86,21 @@ contains
       self%means = self%means/(time%end - time%start)
       self%means(3, :) = self%means(3, :)*(time%end - time%start)**2
     end associate
-    ! both ends in the coordinates of the start
-    if (.not. self%is_known) return
-    associate (at_first => simulation%model%problem%partition)
-      self%log_volume = self%log_volume - log_determinant(self, self%free) &
-                        + log_determinant(self, simulation_free(at_first%kind))
-    end associate
+    if (self%is_known) call find_shown_volume(self, simulation, at_end, err)
+    self%log_volume = self%log_volume + at_end - at_start
   end subroutine follow
+
+  !> The logarithm of the volume of the directions in the coordinates of the data file, less that in those of the motion.
+  subroutine find_shown_volume(self, simulation, log_volume, err)
+    class(orbit_divergence_type), intent(inout) :: self         !< with the directions; those in the angles of the data file on return
+    type(free_simulation_type), intent(inout) :: simulation     !< the motion, shown in these angles
+    real(wp), intent(out) :: log_volume                         !< the logarithm
+    type(error_type), allocatable, intent(out) :: err           !< allocated in gimbal lock
+
+    log_volume = -self%volume_in(self%free)
+    call take_shown_changes(simulation%motion%system, simulation%motion%angles, self%changes, err)
+    if (.not. allocated(err)) log_volume = log_volume + self%volume_in(simulation_free(simulation%model%problem%partition%kind))
+  end subroutine find_shown_volume
 
   !> Begin at the present motion.
   subroutine begin(self, simulation, motors, err)
@@ -97,7 +112,8 @@ contains
     self%is_known = .not. is_closed(simulation)
     self%log_volume = 0.0_wp
     self%motors = motors
-    self%first = simulation%motion%system%state%q
+    self%first = shown_position(simulation)
+    self%log_changed = simulation%motion%log_volume
     self%largest_move = 0.0_wp*self%first
     self%free = simulation%motion%system%plan%free
     if (allocated(self%means)) deallocate (self%means)
@@ -116,7 +132,7 @@ contains
 
     if (simulation%plans() /= self%plans) call change_coordinates(self, simulation)
     self%plans = simulation%plans()
-    if (self%is_known .and. self%takes_two) then
+    if (self%is_known .and. self%takes_two .and. has_same_angles(self, simulation)) then
       call integrate_polynomial(self, simulation, from, to, err)
     else if (self%is_known) then
       call integrate(self, simulation, from, to, err)
@@ -124,6 +140,15 @@ contains
     if (.not. allocated(err)) call simulation%stand_at_step(err)
     if (.not. allocated(err)) call keep(self, simulation, err)
   end subroutine add_step
+
+  !> Whether the same angles move the ball joints as at the end of the last step.
+  pure logical function has_same_angles(self, simulation)
+    class(orbit_divergence_type), intent(in) :: self            !< with the motion there
+    type(free_simulation_type), intent(in) :: simulation        !< the motion
+
+    has_same_angles = size(self%replaced) == size(simulation%motion%angles%replaced)
+    if (has_same_angles) has_same_angles = all(self%replaced .eqv. simulation%motion%angles%replaced)
+  end function has_same_angles
 
   !> The logarithm of the volume of the directions in the free coordinates, their rates and the motors' states, at the present motion.
   subroutine log_determinant_here(self, simulation, log_volume, err)
@@ -134,7 +159,7 @@ contains
 
     call keep(self, simulation, err)
     log_volume = 0.0_wp
-    if (.not. allocated(err)) log_volume = log_determinant(self, self%free)
+    if (.not. allocated(err)) log_volume = self%volume_in(self%free)
   end subroutine log_determinant_here
 
   !> The numbers of the coordinates that are free.
@@ -158,8 +183,9 @@ contains
     associate (system => simulation%motion%system)
       self%changes = system%sensitivity%motion%q
       self%of_motors = system%sensitivity%motors(:, self%motors, 0)
-      self%largest_move = max(self%largest_move, abs(system%state%q - self%first))
+      self%largest_move = max(self%largest_move, abs(shown_position(simulation) - self%first))
       self%free = system%plan%free
+      self%replaced = simulation%motion%angles%replaced
       self%motion = reshape([system%state%q, system%state%dq, system%state%ddq], [size(system%state%q), 3])
       if (allocated(system%state%motor)) self%states = system%state%motor
     end associate
@@ -169,15 +195,13 @@ contains
   subroutine change_coordinates(self, simulation)
     class(orbit_divergence_type), intent(inout) :: self         !< with the directions at the end of the step before
     type(free_simulation_type), intent(in) :: simulation        !< the motion, at the end of a step in other coordinates
-    integer, allocatable :: now(:)
 
-    now = simulation%motion%system%plan%free
-    if (size(now) == size(self%free)) then
-      self%log_volume = self%log_volume + log_determinant(self, now) - log_determinant(self, self%free)
-    else
-      self%is_known = .false.
-    end if
-    self%free = now
+    associate (motion => simulation%motion)
+      if (size(motion%system%plan%free) /= size(self%free)) self%is_known = .false.
+      self%log_volume = self%log_volume + motion%log_volume - self%log_changed
+      self%log_changed = motion%log_volume
+      self%free = motion%system%plan%free
+    end associate
   end subroutine change_coordinates
 
   !> Pass what ended the step: the volume changes as the directions do.
@@ -188,15 +212,16 @@ contains
     real(wp) :: before
     integer :: n
 
-    before = log_determinant(self, self%free)
+    before = self%volume_in(self%free)
     n = size(self%free)
     call simulation%leave_joint(err)
     if (.not. allocated(err)) call keep(self, simulation, err)
     if (allocated(err)) return
     ! a stop that holds a coordinate leaves no volume, nor does a rigid contact that is closed
     if (size(self%free) /= n .or. is_closed(simulation)) self%is_known = .false.
-    if (self%is_known) self%log_volume = self%log_volume + log_determinant(self, self%free) - before
+    if (self%is_known) self%log_volume = self%log_volume + self%volume_in(self%free) - before
     self%plans = simulation%plans()
+    self%log_changed = simulation%motion%log_volume
   end subroutine pass
 
   !> Whether a rigid contact of links is closed, or a stop or friction holds a coordinate.
@@ -212,11 +237,11 @@ contains
   end function is_closed
 
   !> The logarithm of the volume of the directions in some coordinates, their rates, and the motors' states.
-  real(wp) function log_determinant(self, free) result(log_volume)
+  real(wp) function volume_in(self, free) result(log_volume)
     class(orbit_divergence_type), intent(in) :: self   !< with the directions
     integer, intent(in) :: free(:)                     !< numbers of the coordinates
     real(wp) :: a(2*size(free) + size(self%motors), 2*size(free) + size(self%motors))
-    integer :: pivots(size(a, 1)), i, n, info
+    integer :: i, n
 
     n = size(free)
     log_volume = 0.0_wp
@@ -226,11 +251,8 @@ contains
       a(n + 1:2*n, i) = self%changes(i, 1, free)
       a(2*n + 1:, i) = self%of_motors(i, :)
     end do
-    call dgetrf(size(a, 1), size(a, 1), a, size(a, 1), pivots, info)
-    do i = 1, size(a, 1)
-      log_volume = log_volume + log(max(abs(a(i, i)), tiny(1.0_wp)))
-    end do
-  end function log_determinant
+    log_volume = log_determinant(a)
+  end function volume_in
 
   !> Add the integral over the last step. Where the motion within it is not certain, the step is made anew, shorter.
   recursive subroutine integrate(self, simulation, from, to, err)
@@ -257,7 +279,7 @@ contains
         if (self%is_known .and. abs(to - from) > 0.0_wp) call integrate(self, simulation, from, to, err)
         return
       end if
-      self%largest_move = max(self%largest_move, abs(simulation%motion%system%state%q - self%first))
+      self%largest_move = max(self%largest_move, abs(shown_position(simulation) - self%first))
       call add_means(simulation, weights(i)*(to - from), self%means)
       call find_trace(self, simulation, trace, err)
       if (allocated(err)) return
@@ -307,23 +329,34 @@ contains
     end associate
   end subroutine integrate_polynomial
 
+  !> Coordinates at the present motion, in the angles of the data file.
+  pure function shown_position(simulation) result(q)
+    type(free_simulation_type), intent(in) :: simulation   !< the motion
+    real(wp) :: q(size(simulation%motion%system%state%q))  !< (M) [rad, m]
+    real(wp), dimension(size(q)) :: dq, ddq
+
+    call take_shown(simulation%motion%system, simulation%motion%angles, q, dq, ddq)
+  end function shown_position
+
   !> Add a position to the means.
   subroutine add_means(simulation, weight, means)
     type(free_simulation_type), intent(in) :: simulation   !< the motion, which stands within its step
     real(wp), intent(in) :: weight                         !< of the position [s]
     real(wp), intent(inout) :: means(:, :)                 !< (3,M) gets it
+    real(wp), dimension(size(means, 2)) :: position, dq, ddq
     integer :: k
 
-    associate (state => simulation%motion%system%state, plan => simulation%motion%system%plan)
+    call take_shown(simulation%motion%system, simulation%motion%angles, position, dq, ddq)
+    associate (plan => simulation%motion%system%plan)
       do k = 1, size(means, 2)
-        associate (q => state%q(k)/plan%unit_of(k))
+        associate (q => position(k)/plan%unit_of(k))
           if (simulation%model%mechanism%pairs(k)%pair%angular) then
             means(1:2, k) = means(1:2, k) + weight*[cos(q), sin(q)]
           else
             means(1:2, k) = means(1:2, k) + weight*[q, q**2]
           end if
         end associate
-        means(3, k) = means(3, k) + weight*(state%dq(k)/plan%unit_of(k))**2
+        means(3, k) = means(3, k) + weight*(dq(k)/plan%unit_of(k))**2
       end do
     end associate
   end subroutine add_means

@@ -22,6 +22,7 @@ module mech9_period_map
   use mech9_sensitivity, only: sensitivity_type
   use mech9_simulation, only: interruption_type
   use mech9_free_simulation, only: free_simulation_type
+  use mech9_other_angles, only: take_shown, take_shown_changes, set_shown_directions
   use mech9_model_motion, only: model_motion_type
   use mech9_cyclic_coordinates, only: find_cyclic
   use mech9_directed_motion, only: set_directions, set_unit_directions
@@ -201,11 +202,13 @@ contains
         call simulation%begin_sensitivity(self%variable, 2, unused, err)
       end if
       if (.not. allocated(err)) call set_unit_directions(simulation, self%unit_of(:size(self%free)), self%motors)
+      if (.not. allocated(err)) call set_shown_directions(simulation%motion%system, simulation%motion%angles, err)
       if (.not. allocated(err)) call begin_motion(self, simulation, err)
+      if (.not. allocated(err)) call simulation%motion%show_angles(err)
       if (.not. allocated(err)) call take_start(self, simulation)
       if (.not. allocated(err)) call follow(self, simulation, follows, err)
       if (.not. allocated(err)) call simulation%motion%system%show_sensitivity(err)
-      if (.not. allocated(err)) call take_end(self, simulation)
+      if (.not. allocated(err)) call take_end(self, simulation, err)
       time%start = self%from
     end associate
   end subroutine evaluate
@@ -219,6 +222,7 @@ contains
     real(wp), intent(out) :: rate(:)                    !< (states) the derivative in time at the start
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(free_simulation_type), pointer :: simulation
+    real(wp) :: rate_here(self%states)
     integer :: i
 
     states = 0.0_wp
@@ -231,13 +235,12 @@ contains
       if (allocated(err)) return
       simulation => self%motion%free()
       call begin_motion(self, simulation, err)
-      if (.not. allocated(err)) rate = rates_of(self, simulation%motion%system%state)
+      if (.not. allocated(err)) call simulation%motion%show_angles(err)
+      if (.not. allocated(err)) call take_motion(self, simulation, states(:, 1), rate)
       do i = 1, size(times)
         if (.not. allocated(err)) call simulation%advance(time%start + times(i), err)
         if (allocated(err)) return
-        associate (state => simulation%motion%system%state)
-          states(:, i) = self%state_of(state%q, state%dq, self%motor_states(state))
-        end associate
+        call take_motion(self, simulation, states(:, i), rate_here)
       end do
     end associate
   end subroutine sample
@@ -295,13 +298,34 @@ contains
   subroutine take_start(self, simulation)
     class(period_map_type), intent(inout) :: self               !< the map
     type(free_simulation_type), intent(in) :: simulation        !< the motion at its start
+    real(wp), dimension(self%states) :: x, rate
+    real(wp), dimension(size(self%start%q)) :: q, dq, ddq
 
-    associate (state => simulation%motion%system%state)
-      self%at_start = self%state_of(state%q, state%dq, self%motor_states(state))
-      self%rate_at_start = rates_of(self, state)
-      self%dq_at_start = state%dq
-    end associate
+    call take_motion(self, simulation, x, rate)
+    self%at_start = x
+    self%rate_at_start = rate
+    call take_shown(simulation%motion%system, simulation%motion%angles, q, dq, ddq)
+    self%dq_at_start = dq
   end subroutine take_start
+
+  !> Take the state of the present motion and its derivative in time, in the angles of the data file.
+  subroutine take_motion(self, simulation, x, rate)
+    class(period_map_type), intent(in) :: self               !< the map
+    type(free_simulation_type), intent(in) :: simulation     !< the motion
+    real(wp), intent(out) :: x(:)                            !< (states) the state
+    real(wp), intent(out) :: rate(:)                         !< (states) its derivative in time
+    real(wp), dimension(size(self%start%q)) :: q, dq, ddq
+
+    associate (system => simulation%motion%system)
+      call take_shown(system, simulation%motion%angles, q, dq, ddq)
+      x = self%state_of(q, dq, self%motor_states(system%state))
+      if (size(self%motors) > 0) then
+        rate = self%state_of(dq, ddq, system%state%motor_rate)
+      else
+        rate = [dq(self%free), ddq(self%free)]
+      end if
+    end associate
+  end subroutine take_motion
 
   !> States of motors; empty where there are none.
   pure function motor_states(self, state) result(motor)
@@ -312,19 +336,6 @@ contains
     motor = 0.0_wp
     if (allocated(state%motor)) motor = state%motor
   end function motor_states
-
-  !> The derivative of the state in time.
-  pure function rates_of(self, state) result(rates)
-    class(period_map_type), intent(in) :: self   !< the map
-    type(state_type), intent(in) :: state        !< of the motion
-    real(wp) :: rates(self%states)
-
-    if (size(self%motors) > 0) then
-      rates = self%state_of(state%dq, state%ddq, state%motor_rate)
-    else
-      rates = [state%dq(self%free), state%ddq(self%free)]
-    end if
-  end function rates_of
 
   !> Go on to the end.
   subroutine follow(self, simulation, follows, err)
@@ -347,20 +358,25 @@ contains
     end if
   end subroutine follow
 
-  !> Take the state at the end with its derivatives.
-  subroutine take_end(self, simulation)
+  !> Take the state at the end with its derivatives. Fails in gimbal lock, where these do not exist.
+  subroutine take_end(self, simulation, err)
     class(period_map_type), intent(inout) :: self               !< the map
     type(free_simulation_type), intent(in) :: simulation        !< the motion at its end
-    real(wp) :: rows(self%states, self%states + self%parameters)
+    type(error_type), allocatable, intent(out) :: err           !< allocated if it failed
+    real(wp) :: rows(self%states, self%states + self%parameters), x(self%states), rate(self%states)
+    real(wp), dimension(size(self%start%q)) :: q, dq, ddq
+    real(wp) :: changes(self%states + self%parameters, 0:2, size(self%start%q))
     integer :: i, j, n
 
     n = size(self%free)
-    associate (sensitivity => simulation%motion%system%sensitivity, state => simulation%motion%system%state)
+    associate (system => simulation%motion%system, angles => simulation%motion%angles)
+      call take_shown_changes(system, angles, changes, err)
+      if (allocated(err)) return
       do j = 1, size(rows, 2)
-        rows(:n, j) = sensitivity%motion%q(j, 0, self%free)
-        rows(n + 1:2*n, j) = sensitivity%motion%q(j, 1, self%free)
+        rows(:n, j) = changes(j, 0, self%free)
+        rows(n + 1:2*n, j) = changes(j, 1, self%free)
         do i = 1, size(self%motors)
-          rows(2*n + i, j) = sensitivity%motors(j, self%motors(i), 0)
+          rows(2*n + i, j) = system%sensitivity%motors(j, self%motors(i), 0)
         end do
         if (j <= self%states) rows(:, j) = rows(:, j)/self%unit_of(j)
       end do
@@ -369,11 +385,13 @@ contains
       do i = 1, n
         if (self%goes_on(i)) self%by_parameters(i, :) = 0.0_wp
       end do
-      self%q_at_end = state%q
-      self%dq_at_end = state%dq
-      self%at_end = self%state_of(state%q, state%dq, self%motor_states(state))
-      self%rate_at_end = rates_of(self, state)
+      call take_shown(system, angles, q, dq, ddq)
+      call take_motion(self, simulation, x, rate)
     end associate
+    self%q_at_end = q
+    self%dq_at_end = dq
+    self%at_end = x
+    self%rate_at_end = rate
     if (allocated(self%turns)) deallocate (self%turns)
     allocate (self%turns(size(self%q_at_end)), source=0)
     where (self%period_of > 0.0_wp) &
