@@ -19,6 +19,7 @@
 !>   1201 to 1299   src/analyses/equilibrium/equilibrium_failures.f90
 !>   1301 to 1399   src/simulation/integration/integration_failures.f90
 !>   1401 to 1499   src/simulation/events/event_failures.f90
+!>   1501 to 1599   src/simulation/driven/driven_failures.f90
 module mech9_failure
   use mech9_kinds, only: wp
   implicit none

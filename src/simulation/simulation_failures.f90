@@ -2,12 +2,11 @@
 module mech9_simulation_failures
   implicit none
   private
-  public :: failure_not_started, failure_backwards, failure_interrupted, failure_accuracy, failure_open_position, &
-    failure_lost_link, failure_no_initial_position, failure_singular_start_block, failure_driven_dead_point, &
-    failure_gimbal_lock, failure_lost_angles, failure_angles_sensitivity, failure_loaded_lock, &
-    failure_singular_passing, failure_many_events, failure_unheld_stop, failure_stop_passed, &
-    failure_self_locking, failure_friction_sensitivity, failure_contact_passed, failure_contact_still, &
-    last_simulation_failure
+  public :: failure_not_started, failure_backwards, failure_interrupted, failure_accuracy, &
+    failure_open_position, failure_lost_link, failure_no_initial_position, failure_singular_start_block, &
+    failure_driven_dead_point, failure_gimbal_lock, failure_lost_angles, failure_loaded_lock, &
+    failure_singular_passing, failure_many_events, failure_unheld_stop, failure_friction_sensitivity, &
+    failure_contact_still, last_simulation_failure
 
   !> A motion is to advance before its start.
   integer, parameter :: failure_not_started = 1001
@@ -34,30 +33,19 @@ module mech9_simulation_failures
   integer, parameter :: failure_gimbal_lock = 1010
   !> The angles of a ball joint could not be followed through gimbal lock: coordinates, t.
   integer, parameter :: failure_lost_angles = 1011
-  !> Other angles are integrated in place of those of the data file, whose derivatives are not known: t.
-  integer, parameter :: failure_angles_sensitivity = 1012
   !> A ball joint comes to gimbal lock in angles that cannot be replaced: coordinates, others (those of them that loads read or
   !> move; none: a drive or a coupling does), t.
-  integer, parameter :: failure_loaded_lock = 1013
+  integer, parameter :: failure_loaded_lock = 1012
   !> Closed chains come to a singular position that the motion does not pass, whatever coordinates are independent: chains,
   !> coordinates, t.
-  integer, parameter :: failure_singular_passing = 1014
+  integer, parameter :: failure_singular_passing = 1013
   !> A motion has more events than are allowed: limit, t.
-  integer, parameter :: failure_many_events = 1015
+  integer, parameter :: failure_many_events = 1014
   !> No independent coordinates serve with those held whose stops are closed: coordinates (that are held), t.
-  integer, parameter :: failure_unheld_stop = 1016
-  !> A driven motion passes an end of a stop: number (of the stop), coordinates, values (the limit, the coordinate at t_stop), name (of
-  !> their unit), t (of the passing), t_stop (of the position behind it).
-  integer, parameter :: failure_stop_passed = 1017
-  !> Frictions lock a driven motion, so that no drive force moves it this way: coordinates (the pair, the drive), values (the coefficient of
-  !> the pair, the least one at which this is so), number (1 or -1: direction of the drive), limit (1: no force moves it, 2: several do), t.
-  integer, parameter :: failure_self_locking = 1018
+  integer, parameter :: failure_unheld_stop = 1015
   !> Derivatives by parameters are not known with friction: number (of the first one).
-  integer, parameter :: failure_friction_sensitivity = 1019
-  !> A driven motion moves links into each other at a contact: number (of the contact), values (the gap at t_stop), t (of the passing), t_stop
-  !> (of the position behind it).
-  integer, parameter :: failure_contact_passed = 1020
+  integer, parameter :: failure_friction_sensitivity = 1016
   !> The links of a contact never move against each other: number (of the contact).
-  integer, parameter :: failure_contact_still = 1021
+  integer, parameter :: failure_contact_still = 1017
   integer, parameter :: last_simulation_failure = failure_contact_still
 end module mech9_simulation_failures

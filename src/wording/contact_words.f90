@@ -6,7 +6,8 @@ module mech9_contact_words
   use mech9_integration_failures, only: failure_contact_paradox, failure_cornered_contact, failure_shared_contact
   use mech9_event_failures, only: failure_contact_start, failure_contact_violated, failure_undecided_contact, &
     failure_contact_behind
-  use mech9_simulation_failures, only: failure_contact_passed, failure_contact_still
+  use mech9_driven_failures, only: failure_contact_passed
+  use mech9_simulation_failures, only: failure_contact_still
   implicit none
   private
   public :: explain_contact_failure

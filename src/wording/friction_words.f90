@@ -5,7 +5,7 @@ module mech9_friction_words
   use mech9_reaction_failures, only: failure_shared_bearing
   use mech9_integration_failures, only: failure_no_friction
   use mech9_event_failures, only: failure_paradox, failure_shared_sticking, failure_undecided_friction
-  use mech9_simulation_failures, only: failure_self_locking
+  use mech9_driven_failures, only: failure_self_locking
   implicit none
   private
   public :: explain_friction_failure

@@ -5,11 +5,11 @@ module mech9_sensitivity_words
   use mech9_sensitivity_failures, only: failure_no_neighbours, failure_unknown_derivative, &
     failure_singular_sensitivity, failure_opening_parameter
   use mech9_force_gradient_failures, only: failure_jumping_force
-  use mech9_integration_failures, only: failure_jump_sensitivity
+  use mech9_integration_failures, only: failure_jump_sensitivity, failure_angles_sensitivity
   use mech9_event_failures, only: failure_event_sensitivity, cause_grazing, cause_several_impacts, cause_start_on_stop, &
     cause_drive_jumps, cause_breaks_loose, cause_held_hit, cause_contact_loose, &
     cause_contact_rest, cause_rubbing_impact, cause_slip_at_rest
-  use mech9_simulation_failures, only: failure_angles_sensitivity, failure_friction_sensitivity
+  use mech9_simulation_failures, only: failure_friction_sensitivity
   use mech9_reaction_failures, only: failure_shared_force
   use mech9_block_names, only: chain_names
   implicit none

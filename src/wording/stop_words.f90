@@ -4,8 +4,8 @@ module mech9_stop_words
   use mech9_text, only: to_text
   use mech9_failure, only: failure_type
   use mech9_event_failures, only: failure_stop_violated, failure_stop_start, failure_singular_contact
-  use mech9_simulation_failures, only: failure_many_events, failure_unheld_stop, &
-    failure_stop_passed
+  use mech9_simulation_failures, only: failure_many_events, failure_unheld_stop
+  use mech9_driven_failures, only: failure_stop_passed
   implicit none
   private
   public :: explain_stop_failure

@@ -7,10 +7,10 @@ import re
 
 from mech9_cases import TREE, text_of
 
-FLOORS = ['base', 'system', 'numerics', 'numerics/minima', 'numerics/continuation', 'spatial', 'structure', 'model/couplings', 'model/laws', 'model/loads', 'model/request', 'model',
+FLOORS = ['base', 'system', 'numerics', 'numerics/taylor', 'numerics/minima', 'numerics/continuation', 'spatial', 'structure', 'model/couplings', 'model/laws', 'model/loads', 'model/request', 'model',
           'sampling', 'user', 'kinematics/plan', 'kinematics/motion', 'kinematics/assembly', 'kinematics/planning', 'kinematics/tracking', 'kinematics/lanes',
           'ode', 'dynamics', 'dynamics/planning', 'dynamics/variations', 'analyses/sensitivity', 'dynamics/sensitivity', 'reactions', 'simulation/integration',
-          'simulation/events', 'simulation',
+          'simulation/events', 'simulation', 'simulation/driven',
           'analyses/equilibrium', 'analyses/continuation', 'analyses/planar_runs', 'analyses', 'wording', 'runs', 'runs/long_term', 'studies', 'synthesis', 'input/document', 'input', 'drafts', 'input/checks', 'searches', 'output/layout', 'output', 'interchange/xml', 'interchange', 'reports',
           'pictures/plots', 'pictures/scene', 'pictures/arrows',
           'pictures/films', 'terminal', 'session/command', 'descriptions', 'descriptions/motions', 'facade', 'facade/files', 'facade/made', 'api', 'session/results', 'session/study', 'session',

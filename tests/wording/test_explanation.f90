@@ -18,6 +18,7 @@ module test_explanation
   use mech9_dynamics_failures, only: last_dynamics_failure, failure_singular_block, failure_no_inertia
   use mech9_sensitivity_failures, only: last_sensitivity_failure
   use mech9_force_gradient_failures, only: last_force_gradient_failure, failure_lost_inertia
+  use mech9_driven_failures, only: last_driven_failure
   use mech9_integration_failures, only: last_integration_failure, failure_other_branch, failure_drive_jumps, &
     failure_no_friction, failure_contact_paradox
   use mech9_event_failures, only: last_event_failure, failure_undecided_friction
@@ -58,7 +59,7 @@ contains
     integer, parameter :: lasts(*) = [last_shared_failure, last_spline_failure, last_curve_failure, last_assembly_failure, &
       last_planning_failure, last_tracking_failure, last_ode_failure, last_dynamics_failure, last_sensitivity_failure, &
       last_force_gradient_failure, last_simulation_failure, last_reaction_failure, last_equilibrium_failure, &
-      last_integration_failure, last_event_failure]
+      last_integration_failure, last_event_failure, last_driven_failure]
     integer :: i, kind
 
     do i = 1, size(lasts)

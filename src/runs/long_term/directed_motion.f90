@@ -6,8 +6,7 @@ module mech9_directed_motion
   use mech9_model, only: model_type
   use mech9_request, only: output_settings_type
   use mech9_event_failures, only: failure_event_sensitivity
-  use mech9_integration_failures, only: failure_cornered_contact, failure_shared_contact
-  use mech9_simulation_failures, only: failure_angles_sensitivity
+  use mech9_integration_failures, only: failure_cornered_contact, failure_shared_contact, failure_angles_sensitivity
   use mech9_free_simulation, only: free_simulation_type
   use mech9_sensitivity_words, only: find_cause_at_event
   implicit none

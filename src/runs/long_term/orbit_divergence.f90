@@ -43,7 +43,7 @@ module mech9_orbit_divergence
     real(wp), allocatable, private :: changes(:, :, :)   !< (directions,0:1,M) of all coordinates at the end of the last step
     real(wp), allocatable, private :: of_motors(:, :)    !< (directions,motors) of the motors there
     integer, private :: plans = 0                        !< how often the plan had changed there
-    real(wp), private :: log_changed = 0.0_wp            !< what these changes had added to the logarithm of the volume
+    real(wp), private :: log_changed = 0.0_wp            !< logarithm that these changes had added to the volume
     logical, allocatable, private :: replaced(:)         !< (ball joints) other angles moved them there
     real(wp), allocatable, private :: motion(:, :)       !< (M,0:2) coordinates, rates and accelerations there
     real(wp), allocatable, private :: states(:)          !< (motors) of motors there

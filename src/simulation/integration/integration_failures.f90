@@ -4,7 +4,7 @@ module mech9_integration_failures
   private
   public :: failure_singular_step, failure_unclosed_step, failure_other_branch, failure_drive_jumps, &
     failure_jump_sensitivity, failure_no_friction, failure_contact_paradox, failure_cornered_contact, &
-    failure_shared_contact, last_integration_failure
+    failure_shared_contact, failure_angles_sensitivity, last_integration_failure
 
   !> A position inside a step is too near to a singular one for the independent coordinates.
   integer, parameter :: failure_singular_step = 1301
@@ -26,5 +26,7 @@ module mech9_integration_failures
   !> Derivatives by parameters are not known where equilibrium does not determine the forces of closed contacts, with friction or where
   !> forces are wanted: number (of the first of these contacts), t.
   integer, parameter :: failure_shared_contact = 1309
-  integer, parameter :: last_integration_failure = failure_shared_contact
+  !> Other angles are integrated in place of those of the data file, whose derivatives are not known: t.
+  integer, parameter :: failure_angles_sensitivity = 1310
+  integer, parameter :: last_integration_failure = failure_angles_sensitivity
 end module mech9_integration_failures

@@ -2,7 +2,7 @@
 module mech9_other_angles
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_singular
-  use mech9_simulation_failures, only: failure_angles_sensitivity
+  use mech9_integration_failures, only: failure_angles_sensitivity
   use mech9_log_determinant, only: log_determinant
   use mech9_model, only: model_type
   use mech9_plan, only: copy_plan

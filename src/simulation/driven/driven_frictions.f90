@@ -6,7 +6,7 @@ module mech9_driven_frictions
   use mech9_error, only: error_type, raise, add_place, exit_singular
   use mech9_event_tolerances, only: at_rest
   use mech9_integration_failures, only: failure_no_friction
-  use mech9_simulation_failures, only: failure_self_locking
+  use mech9_driven_failures, only: failure_self_locking
   use mech9_friction, only: friction_type
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type

@@ -3,7 +3,7 @@ module mech9_driven_stops
   use mech9_kinds, only: wp
   use mech9_event_tolerances, only: touching
   use mech9_error, only: error_type, raise, exit_singular
-  use mech9_simulation_failures, only: failure_stop_passed, failure_contact_passed
+  use mech9_driven_failures, only: failure_stop_passed, failure_contact_passed
   use mech9_hermite, only: cubic_between
   use mech9_law, only: drive_slot_type
   use mech9_model, only: model_type
