@@ -17,7 +17,7 @@ module mech9_driven_frictions
     new_friction_modes
   implicit none
   private
-  public :: driven_frictions_type, rest_range_type
+  public :: driven_frictions_type, rest_range_type, slip_directions
 
   !> The first output at which pairs with friction are at rest, and how many there are.
   type :: rest_range_type
@@ -33,6 +33,8 @@ module mech9_driven_frictions
     type(friction_balance_type), private :: balance
     real(wp), allocatable, private :: ratios(:)   !< (frictions) rates of their coordinates by that of the first drive
     type(rest_range_type) :: rest
+    real(wp), allocatable :: given(:)             !< (frictions) directions of pairs that turn back at the present time, on the side that
+                                                  !< is looked at; 0: that of the rate. Not allocated elsewhere
   contains
     procedure :: find
     procedure, private :: find_rest_range
@@ -48,7 +50,6 @@ contains
     type(state_type), intent(inout) :: state              !< the state; gets the frictions
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
     type(friction_modes_type) :: modes
-    real(wp) :: fastest
     integer :: i
     logical :: solved, unique, prepared
 
@@ -60,12 +61,10 @@ contains
         self%balance = new_friction_balance(size(frictions))
       end if
       modes = new_friction_modes(size(frictions))
-      fastest = fastest_rate(plan, state)
+      modes%direction = slip_directions(mechanism, plan, state)
+      if (allocated(self%given)) modes%direction = merge(self%given, modes%direction, abs(self%given) > 0.0_wp)
       do i = 1, size(frictions)
-        associate (rate => state%dq(frictions(i)%coordinate))
-          if (abs(rate)/plan%unit_of(frictions(i)%coordinate) > at_rest*fastest) modes%direction(i) = sign(1.0_wp, rate)
-          if (frictions(i)%is_smooth) modes%direction(i) = tanh(rate/frictions(i)%transition)
-        end associate
+        if (frictions(i)%is_smooth) modes%direction(i) = tanh(state%dq(frictions(i)%coordinate)/frictions(i)%transition)
       end do
       call find_balance(self, mechanism, plan, state, err)
       if (allocated(err)) return
@@ -84,6 +83,22 @@ contains
       end if
     end associate
   end subroutine find
+
+  !> Directions in which pairs slide, by their rates; 0 at rest, and where the friction is smooth.
+  pure function slip_directions(mechanism, plan, state) result(directions)
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    type(plan_type), intent(in) :: plan             !< its plan
+    type(state_type), intent(in) :: state           !< the state
+    real(wp) :: directions(size(mechanism%frictions))
+    real(wp) :: fastest
+
+    fastest = fastest_rate(plan, state)
+    associate (frictions => mechanism%frictions, rates => state%dq(mechanism%frictions%coordinate))
+      directions = 0.0_wp
+      where (abs(rates)/plan%unit_of(frictions%coordinate) > at_rest*fastest .and. .not. frictions%is_smooth) &
+        directions = sign(1.0_wp, rates)
+    end associate
+  end function slip_directions
 
   !> The rate by which rest is judged: the largest one of all coordinates in their units, or what their accelerations give in the time in
   !> which they move by their units [1/s].

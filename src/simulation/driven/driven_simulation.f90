@@ -22,6 +22,7 @@ module mech9_driven_simulation
   use mech9_clear_stops, only: clear_stops_type
   use mech9_driven_stops, only: check_stops
   use mech9_driven_frictions, only: driven_frictions_type
+  use mech9_driven_turns, only: driven_turns_type
   use mech9_simulation, only: simulation_type, simulation_statistics_type, standing_type
   implicit none
   private
@@ -40,11 +41,16 @@ module mech9_driven_simulation
     logical, private :: watches_ends = .false.                   !< it has rigid ends, which it must not pass
     type(short_ways_type), private :: unseen                     !< ways between looks at rigid ends
     class(driven_frictions_type), allocatable :: frictions       !< not allocated: there are none, or no forces are requested
+    type(driven_turns_type), private :: turns                    !< of pairs with friction; they come where frictions are allocated
     type(driven_counts_type), private :: kept_work(batch_size)   !< of positions that wait for their derivatives
   contains
     procedure :: begin
     procedure :: go_to
     procedure :: stride
+    procedure :: end_of_stride
+    procedure :: leave_joint
+    procedure :: may_jump
+    procedure :: look_at
     procedure :: present => present_state
     procedure :: present_for_forces
     procedure :: present_closure
@@ -122,11 +128,25 @@ contains
       call check_stops(self%model, self%plan, self%angles%held%drives, self%driven, t, self%contacts, err)
       call self%clear%begin(self%contacts, self%plan, self%driven%state)
     end if
-    if (allocated(self%frictions) .and. .not. allocated(err)) call find_frictions(self, err)
+    if (.not. allocated(self%frictions) .or. allocated(err)) return
+    call find_frictions(self, err)
+    associate (time => self%model%request%time)
+      call self%turns%begin(self%model%mechanism, self%plan, self%driven%state, sign(1.0_wp, time%end - time%start))
+    end associate
   end subroutine begin
 
   !> The position at time t, on the same branch. Whether the motion shall stop is asked after many steps, too.
   subroutine go_to(self, t, err)
+    class(driven_simulation_type), intent(inout) :: self   !< the simulation
+    real(wp), intent(in) :: t                              !< time to go to [s]
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+
+    call move_to(self, t, err)
+    if (allocated(self%frictions) .and. .not. allocated(err)) call find_frictions(self, err)
+  end subroutine go_to
+
+  !> Move to the position at time t, whose frictions are not found yet.
+  subroutine move_to(self, t, err)
     class(driven_simulation_type), intent(inout) :: self   !< the simulation
     real(wp), intent(in) :: t                              !< time to go to [s]
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
@@ -148,8 +168,7 @@ contains
       if (self%watches_ends) call pass_ends(self, before, err)
       if (allocated(err) .or. .not. abs(t - next) > 0.0_wp) exit
     end do
-    if (allocated(self%frictions) .and. .not. allocated(err)) call find_frictions(self, err)
-  end subroutine go_to
+  end subroutine move_to
 
   !> Check that no rigid end was passed since the last position.
   subroutine pass_ends(self, before, err)
@@ -165,13 +184,14 @@ contains
     call self%clear%renew(self%contacts, self%plan, self%driven%state)
   end subroutine pass_ends
 
-  !> Go on by a way within which no drive moves far, and the motion of the others is known well by its ends.
+  !> Go on by a way within which no drive moves far, and the motion of the others is known well by its ends. It ends at the first time at
+  !> which a pair with friction turns back.
   subroutine stride(self, t, from, to, at_joint, err)
     class(driven_simulation_type), intent(inout) :: self   !< the simulation, started
     real(wp), intent(in) :: t                              !< time to go towards [s]
     real(wp), intent(out) :: from                          !< start of the way [s]
     real(wp), intent(inout) :: to                          !< end of the way before; then of this one [s]
-    logical, intent(out) :: at_joint                       !< rates may jump at its end: never told
+    logical, intent(out) :: at_joint                       !< frictions jump at its end
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     real(wp) :: next
 
@@ -179,9 +199,57 @@ contains
     from = to
     next = end_of_way(self%model%problem%drives, self%plan, longest_way, from, t)
     call self%stop_if_interrupted(next, err)
-    if (.not. allocated(err)) call self%go_to(next, err)
-    if (.not. allocated(err)) to = next
+    if (.not. allocated(err)) call move_to(self, next, err)
+    if (allocated(err)) return
+    if (self%turns%may_come) then
+      call self%turns%find_first(self%model%mechanism, self%plan, self%angles%held%drives, self%driven, next)
+      call move_to(self, next, err)
+      if (allocated(err)) return
+      call self%turns%note_end(self%model%mechanism, self%plan, self%driven%state)
+      at_joint = self%turns%is_at_end
+    end if
+    to = next
+    if (allocated(self%frictions)) call self%look_at(next, err)
   end subroutine stride
+
+  !> The end of the last stride, where pairs with friction may turn back [s].
+  pure real(wp) function end_of_stride(self, known)
+    class(driven_simulation_type), intent(in) :: self   !< the simulation, started
+    real(wp), intent(in) :: known                       !< the end of the last stride as it was [s]
+
+    end_of_stride = merge(self%turns%end, known, self%turns%may_come)
+  end function end_of_stride
+
+  !> Stand behind the turn at the end of the last stride.
+  subroutine leave_joint(self, err)
+    class(driven_simulation_type), intent(inout) :: self   !< the simulation, started
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+
+    if (.not. self%turns%is_at_end) return
+    self%turns%is_left = .true.
+    call self%look_at(self%turns%end, err)
+  end subroutine leave_joint
+
+  !> Whether frictions may jump where pairs turn back.
+  pure logical function may_jump(self)
+    class(driven_simulation_type), intent(in) :: self   !< the simulation
+
+    may_jump = .false.
+    if (allocated(self%frictions)) may_jump = .not. all(self%model%mechanism%frictions%is_smooth)
+  end function may_jump
+
+  !> Stand at a time within the last stride; at its end, on one side of a turn.
+  subroutine look_at(self, t, err)
+    class(driven_simulation_type), intent(inout) :: self   !< the simulation, started
+    real(wp), intent(in) :: t                              !< the time [s]
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    logical :: at_turn
+
+    at_turn = self%turns%is_at_end .and. .not. abs(t - self%turns%end) > 0.0_wp
+    if (at_turn) self%frictions%given = self%turns%sides(:, merge(2, 1, self%turns%is_left))
+    call self%go_to(t, err)
+    if (at_turn) deallocate (self%frictions%given)
+  end subroutine look_at
 
   !> Find the frictions at the present time.
   subroutine find_frictions(self, err)
