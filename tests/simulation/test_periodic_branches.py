@@ -1,5 +1,5 @@
 """Branches of periodic motions over a parameter: closed forms of a linear oscillator, the boundary of Kapitza's pendulum, symmetry breaking
-and period doubling of the driven pendulum, against independent integrations; refusals."""
+and period doubling of the driven pendulum, against independent integrations; a ball that bounces on a table; refusals."""
 
 import numpy as np
 import pytest
@@ -85,6 +85,38 @@ def test_kapitza(checks, mech9d, tmp_path):
     unstable = rows['W'] < 44.39
     checks.true((rows['growth'][first & unstable] > 1e-3).all(), 'unstable below', rows['growth'])
     checks.true((np.abs(rows['growth'][first & (rows['W'] > 44.4)]) < 1e-6).all(), 'neutral above', rows['growth'])
+
+
+def test_a_ball_on_a_table(checks, mech9d, tmp_path):
+    """A ball meets a table that vibrates once in each period T. With A the amplitude of the table, w its frequency and f the phase of the
+    impact, A w^2 cos f = pi g (1 - e)/(1 + e). The period doubles where A w^2 sin f = 2 g (1 + e^2)/(1 + e)^2: the multipliers, whose
+    product is e^2, are -1 and -e^2 there."""
+    text = """&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=0,1,0 /
+&pair coordinate=2, links=1,3, kind='prismatic', axis=0,1,0 /
+&drive coordinate=1, kind='harmonic', amplitude=0.05, angular_frequency=20 /
+&initial coordinate=2, position=0.14415, velocity=-1.1244 /
+&body link=3, mass=1 /
+&gravity acceleration=0,-9.81,0 /
+&point name='C', link=3, position=0,0,0 /
+&contact point='C', link=2, normal=0,1,0, radius=0.05, restitution=0.35 /
+&parameter name='e', sets='contact.restitution', low=0.28, high=0.36 /
+&branch parameter='e', of='periodic', switch=.false. /
+&time end=1 /
+"""
+    rows, branches, _ = follow(mech9d, tmp_path, text, 'e')
+    checks.near([rows['e'].min(), rows['e'].max()], [0.28, 0.36], 1e-13, 'the whole range')
+    g, e = 9.81, rows['e']
+    f = np.arccos(np.pi * g * (1 - e) / (20 * (1 + e)))
+    t, v = f / 20, np.pi * g / 20
+    checks.near(rows['q2'], 0.05 + 0.05 * np.sin(f) + v * t - g * t**2 / 2, 1e-8, 'the height at the start of the period')
+    low, high = 0.28, 0.36
+    for _ in range(60):
+        e = (low + high) / 2
+        sine = np.sqrt(1 - (np.pi * g * (1 - e) / (20 * (1 + e)))**2)
+        low, high = (e, high) if 20 * sine < 2 * g * (1 + e**2) / (1 + e)**2 else (low, e)
+    doubled = [point['value'] for point in branches[0]['special_points'] if point['kind'] == 'period doubling']
+    checks.near(doubled, [low], 1e-9, 'the period doubles')
 
 
 def test_driven_pendulum(checks, mech9d, tmp_path):
