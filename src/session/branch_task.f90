@@ -8,7 +8,7 @@ module mech9_branch_task
   use mech9_branch_plot, only: branch_rows_type, draw_branch_plot, read_branch_plot
   use mech9_plot_request, only: plot_request_type
   use mech9_answer_files, only: save_table
-  use mech9_program_kind, only: dynamics
+  use mech9_program_kind, only: program_names, dynamics
   use mech9_command_line, only: command_line_type
   use mech9_data_file, only: data_file_type
   use mech9_written_files, only: result_paths_type, find_result_paths, list_plot_requests
@@ -17,7 +17,7 @@ module mech9_branch_task
   use mech9_answer_report, only: save_branches_report
   use mech9_branch_words, only: print_branches
   use mech9_friction_text, only: print_left_out
-  use mech9_signal_interruption, only: signal_interruption_type
+  use mech9_signal_interruption, only: signal_interruption_type, answer_progress_type
   implicit none
   private
   public :: work_on_branches
@@ -31,6 +31,8 @@ contains
     logical, intent(out) :: reported                                !< the report is written
     type(recorded_branches_type) :: found
     type(result_paths_type) :: paths
+    type(answer_progress_type), target :: progress
+    type(signal_interruption_type) :: interruption
     type(error_type), allocatable :: err, of_files
 
     reported = .false.
@@ -38,8 +40,11 @@ contains
     if (given%failed()) return
     call find_result_paths(options, paths, given)
     call check_plots(options, given, err)
+    interruption%progress => progress
+    call progress%line%start(program_names(given%model%program), options%has('quiet'))
     if (.not. allocated(err)) &
-      call found%find(given, options%argument('branch'), err, signal_interruption_type())
+      call found%find(given, options%argument('branch'), err, interruption)
+    call progress%line%finish()
     if (found%count() > 0) then
       if (.not. options%has('quiet')) call tell(given, found)
       call save_table(paths%table, options, given, heading_of(given%model%mechanism%title, found%columns), found%rows, of_files)

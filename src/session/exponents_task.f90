@@ -2,6 +2,7 @@
 module mech9_exponents_task
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mech9_kinds, only: wp
+  use mech9_program_kind, only: program_names
   use mech9_error, only: error_type
   use mech9_text, only: string_type
   use mech9_heading, only: new_heading
@@ -11,7 +12,7 @@ module mech9_exponents_task
   use mech9_recorded_exponents, only: recorded_exponents_type
   use mech9_exponents_words, only: print_exponents
   use mech9_answer_report, only: save_exponents_report
-  use mech9_signal_interruption, only: signal_interruption_type
+  use mech9_signal_interruption, only: signal_interruption_type, answer_progress_type
   implicit none
   private
   public :: work_on_exponents
@@ -24,12 +25,17 @@ contains
     type(data_file_type), intent(inout) :: given            !< the data file; it gets the errors
     logical, intent(out) :: reported                        !< the report is written
     type(recorded_exponents_type) :: found
+    type(answer_progress_type), target :: progress
+    type(signal_interruption_type) :: interruption
     type(error_type), allocatable :: err, of_table
 
     reported = .false.
     call given%check_times(.true.)
     if (given%failed()) return
-    call found%find(given, options%number('exponents', 1), err, signal_interruption_type())
+    interruption%progress => progress
+    call progress%line%start(program_names(given%model%program), options%has('quiet'))
+    call found%find(given, options%number('exponents', 1), err, interruption)
+    call progress%line%finish()
     if (allocated(found%exponents)) then
       if (.not. options%has('quiet')) call print_exponents(error_unit, given%model, found%exponents_found_type)
       call write_table(options, given, found, of_table)

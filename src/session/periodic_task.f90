@@ -1,6 +1,7 @@
 !> The work of mech9d for --periodic: a periodic motion is found, and a run records one period of it.
 module mech9_periodic_task
   use, intrinsic :: iso_fortran_env, only: error_unit
+  use mech9_program_kind, only: program_names
   use mech9_error, only: error_type
   use mech9_command_line, only: command_line_type
   use mech9_data_file, only: data_file_type
@@ -8,7 +9,7 @@ module mech9_periodic_task
   use mech9_picture_requests, only: picture_requests_type, read_picture_requests
   use mech9_periodic_words, only: print_periodic
   use mech9_run_task, only: carry_out
-  use mech9_signal_interruption, only: signal_interruption_type
+  use mech9_signal_interruption, only: signal_interruption_type, answer_progress_type
   implicit none
   private
   public :: work_on_periodic
@@ -22,11 +23,16 @@ contains
     logical, intent(out) :: reported                        !< the report is written
     type(kept_rows_type), intent(inout), optional :: kept   !< gets the rows as well
     type(picture_requests_type) :: pictures
+    type(answer_progress_type), target :: progress
+    type(signal_interruption_type) :: interruption
     type(error_type), allocatable :: err
 
     reported = .false.
     call read_picture_requests(options, given, pictures, err)
-    if (.not. allocated(err)) call given%find_periodic(signal_interruption_type(), err)
+    interruption%progress => progress
+    call progress%line%start(program_names(given%model%program), options%has('quiet'))
+    if (.not. allocated(err)) call given%find_periodic(interruption, err)
+    call progress%line%finish()
     if (.not. allocated(err)) call given%run%prepare(given%model, err, pictures=pictures%any_wanted())
     if (allocated(err)) then
       ! motions that were found before an interruption are told

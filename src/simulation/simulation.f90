@@ -110,6 +110,7 @@ module mech9_simulation
     procedure :: advance
     procedure :: visit
     procedure :: stop_if_interrupted
+    procedure :: tell_share
     procedure :: stride => stride_at_once
     procedure :: end_of_stride => same_end
     procedure :: leave_joint => leave_nothing
@@ -382,6 +383,14 @@ contains
     call raise(err, exit_interrupted, failure_interrupted)
     err%failure%t = t
   end subroutine stop_if_interrupted
+
+  !> Tell who may interrupt the motion how far the answer is that needs it.
+  subroutine tell_share(self, share)
+    class(simulation_type), intent(inout) :: self   !< the simulation
+    real(wp), intent(in) :: share                   !< part that is done, from 0 to 1
+
+    if (allocated(self%interruption)) call self%interruption%tell(share)
+  end subroutine tell_share
 
   !> Learn that a run begins, which may need several motions. Interruptions do nothing then unless they say so.
   subroutine begin_nothing(self, number)

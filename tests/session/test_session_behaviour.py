@@ -12,6 +12,16 @@ import pytest
 from mech9_cases import PATIENCE
 from pseudo_terminal import available
 
+# a damped pendulum under a torque with the period of 1 s
+PENDULUM = """&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&body link=2, mass=1, centre=0,-1,0 /
+&gravity acceleration=0,-9.81,0 /
+&load kind='coordinate', coordinate=1, damping=0.5 /
+&load kind='coordinate', coordinate=1, force=2, law='harmonic', amplitude=1, angular_frequency=6.283185307179586 /
+&initial coordinate=1, position=0.2 /
+"""
+
 
 @pytest.fixture
 def probe(build):
@@ -116,6 +126,23 @@ def test_progress(checks, probe):
     checks.true("\n" not in got, "on one line")
     checks.true(on_terminal(probe, "progress", "3", "quiet") == "", "nothing from a quiet run")
     checks.true(on_terminal(probe, "progress", "0") == "", "nothing from a short run")
+
+
+def test_progress_of_answers(checks, mech9d, tmp_path):
+    """Exponents tell how far they are."""
+    if not available():
+        checks.left_out('there are no pseudo-terminals here')
+        return
+    path = tmp_path / 'pendulum.nml'
+    for seconds in (500, 1500, 4500):
+        path.write_text(f'{PENDULUM}&time end={seconds}, intervals=1 /\n', encoding='utf-8')
+        lines = on_terminal(mech9d, path, '--exponents', '1', '--no-write').split('\r')
+        shown = [line for line in lines if line.startswith('mech9d ') and 'left' in line]
+        if shown:
+            break
+    checks.true(bool(shown) and all(len(line) <= 79 for line in shown), 'a line within 80 columns', lines[-3:])
+    checks.true(bool(shown) and any(line == ' ' * 79 for line in lines[lines.index(shown[-1]):]), 'which is erased', lines[-3:])
+    checks.true(on_terminal(mech9d, path, '--exponents', '1', '--no-write', '--quiet') == '', 'nothing with --quiet')
 
 
 def test_table(checks, probe, tmp_path):

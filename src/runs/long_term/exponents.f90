@@ -299,6 +299,9 @@ contains
         return
       end if
       call sums%add(to, logs)
+      associate (start => simulation%model%request%time%start)
+        call simulation%tell_share((to - start)/(found%to - start))
+      end associate
       spread = max(spread, maxval(abs(logs)))
       interval = min(max(abs(longest), least_steps*abs(to - from)), growth*abs(to - since))
       if (spread > largest_spread) interval = min(interval, abs(to - since)*largest_spread/spread)
