@@ -13,7 +13,7 @@ import pytest
 
 from failures import kinds
 from free_delta import delta
-from contact_cases import DRIVEN_POINT, PRESSED_POINT, ROD, SLIDING_POINT, SUNK_POINT, TWO_FEET
+from contact_cases import DRIVEN_POINT, PRESSED_POINT, ROD, SLIDING_POINT, STILL_POINT, SUNK_POINT, TWO_FEET
 from friction_cases import FIVE_RUBBING, FOUR_RUBBING, LADDER, RUBBING, WEDGE
 from mech9_cases import TREE, run, text_of
 
@@ -498,6 +498,9 @@ def free_cases():
          {'path.dat': '1.5 0.1\n3 0.1\n'}, SINGULAR,
          ['the ball of contact 1 comes behind its path at t = ', ' s, round one of its ends: it is 0.1 m within the surface. Make the path '
           'longer, or close it']),
+        ('contact_still', STILL_POINT, (), DATA,
+         ['the links of contact 1 never move against each other: the pairs between them stand still. Name another link or point, or leave '
+          'the contact out']),
         ('contact_violated', PRESSED_POINT, (), SINGULAR,
          ['the drives press the links of contact 1 into each other from t = 0.5 s on; the gap has the rate -1 m/s. Change the drives, or '
           'make the contact compliant by stiffness=']),

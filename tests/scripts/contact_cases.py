@@ -31,6 +31,16 @@ DRIVEN_POINT = """&structure cq=1 /
 &contact point='P' /
 &time end=1, intervals=10 /
 """
+STILL_POINT = """&structure cq=1,2 /
+&drive coordinate=2, kind='polynomial', coefficients=0.1 /
+&pair coordinate=1, links=1,2, kind='prismatic', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='prismatic', axis=0,0,1 /
+&initial coordinate=1, position=0, velocity=0 /
+&body link=3, mass=1 /
+&point name='P', link=3 /
+&contact point='P', link=2, origin=0,0,-0.1 /
+&time end=0.05 /
+"""
 PRESSED_POINT = DRIVEN_POINT.replace('cq=1', 'cq=1,2') + """&pair coordinate=2, links=1,3, kind='prismatic', axis=0,1,0 /
 &body link=2, mass=1 /
 &body link=3, mass=1 /
