@@ -94,7 +94,7 @@ contains
     if (self%n > 0) call step(self%n, self%coordinates, state%q, state%dq, abs(h), self%ranges, clear)
   end subroutine go_on
 
-  !> The same with explicit shapes, so that the loops need no strides.
+  !> The same with explicit shapes, so that the loops need no strides. The last positions stay where a coordinate is not clear.
   pure subroutine step(n, coordinates, q, dq, h, ranges, clear)
     integer, intent(in) :: n                    !< number of the coordinates
     integer, intent(in) :: coordinates(n)       !< their numbers
@@ -103,17 +103,17 @@ contains
     real(wp), intent(in) :: h                   !< length of the step [s]
     real(wp), intent(inout) :: ranges(4, n)     !< as in the type
     logical, intent(out) :: clear               !< no end was passed
-    integer :: i
+    integer :: i, c
 
-    clear = .true.
     do i = 1, n
-      associate (c => coordinates(i))
-        clear = clear .and. abs(q(c) - ranges(1, i)) <= ranges(2, i) .and. max(abs(dq(c)), abs(ranges(4, i)))*h <= ranges(2, i)
-      end associate
+      c = coordinates(i)
+      clear = abs(q(c) - ranges(1, i)) <= ranges(2, i) .and. max(abs(dq(c)), abs(ranges(4, i)))*h <= ranges(2, i)
+      if (.not. clear) return
     end do
-    if (.not. clear) return
     do i = 1, n
-      ranges(3:4, i) = [q(coordinates(i)), dq(coordinates(i))]
+      c = coordinates(i)
+      ranges(3, i) = q(c)
+      ranges(4, i) = dq(c)
     end do
   end subroutine step
 end module mech9_clear_stops

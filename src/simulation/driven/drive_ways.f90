@@ -15,6 +15,7 @@ module mech9_drive_ways
     integer, private :: until_search = 0                     !< so many ways are found by themselves before a time is looked for again
   contains
     procedure :: end_of_next
+    procedure :: knows
   end type short_ways_type
 
   !> Halvings of a longer way.
@@ -35,7 +36,7 @@ contains
     real(wp), intent(in) :: t                        !< the time [s]
 
     next = t
-    if (is_known()) return
+    if (self%knows(from, t)) return
     next = end_of_way(drives, plan, self%longest, from, t)
     if (abs(t - next) > 0.0_wp) return
     self%until_search = self%until_search - 1
@@ -44,15 +45,18 @@ contains
     self%from = from
     self%to = from + ways_ahead*(t - from)
     self%longest_step = longest_part(drives, plan, self%longest, self%from, self%to)
-    if (is_known()) self%until_search = 0
-  contains
-    !> Whether the way lies within the known time and is short.
-    pure logical function is_known()
-
-      is_known = abs(t - from) <= self%longest_step .and. (from - self%from)*(self%to - from) >= 0.0_wp &
-                 .and. (t - self%from)*(self%to - t) >= 0.0_wp
-    end function is_known
+    if (self%knows(from, t)) self%until_search = 0
   end function end_of_next
+
+  !> Whether a way lies within the known time and is short.
+  pure logical function knows(self, from, t)
+    class(short_ways_type), intent(in) :: self       !< the known ways
+    real(wp), intent(in) :: from                     !< start of the way [s]
+    real(wp), intent(in) :: t                        !< its end [s]
+
+    knows = abs(t - from) <= self%longest_step .and. (from - self%from)*(self%to - from) >= 0.0_wp &
+            .and. (t - self%from)*(self%to - t) >= 0.0_wp
+  end function knows
 
   !> The end of a way towards a time, on which no drive moves farther than a given way, turns back twice, or passes a joint of its law.
   real(wp) function end_of_way(drives, plan, longest, from, t) result(next)

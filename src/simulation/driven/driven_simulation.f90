@@ -156,7 +156,9 @@ contains
     do
       before = self%driven%state%t
       next = t
-      if (self%watches_ends) next = self%unseen%end_of_next(self%model%problem%drives, self%plan, before, t)
+      if (self%watches_ends) then
+        if (.not. self%unseen%knows(before, t)) next = self%unseen%end_of_next(self%model%problem%drives, self%plan, before, t)
+      end if
       do
         call advance_with_angles(self%model, self%plan, next, self%driven, self%angles, reached, err)
         if (allocated(err)) return
