@@ -13,7 +13,7 @@ module mech9_other_angles
   use mech9_third_derivatives, only: find_third_derivatives
   use mech9_partition, only: partition_type
   use mech9_variable_model, only: variable_model_type
-  use mech9_varied_angles, only: carry_to_angles, carry_to_given_angles, carry_from_given_angles
+  use mech9_varied_angles, only: carry_to_angles, carry_given_angles
   implicit none
   private
   public :: take_angles, show_in_angles, set_in_partition, refuse_angles, refuse_parameters, hand_on_sensitivity, take_shown, &
@@ -192,7 +192,7 @@ contains
     changes = system%sensitivity%motion%q
     if (.not. angles%in_use()) return
     if (angles%in_lock()) call refuse_angles(angles, system%state%t, err)
-    if (.not. allocated(err)) call carry_to_given_angles(angles, system%state, changes)
+    if (.not. allocated(err)) call carry_given_angles(angles, system%state, .true., changes)
   end subroutine take_shown_changes
 
   !> Let each direction lie along one free coordinate of the data file, or along its rate; further ones stay. Fails where the start stands in
@@ -214,7 +214,7 @@ contains
       do order = 0, 1
         changes(:, order, free) = values(:, :, order)
       end do
-      call carry_from_given_angles(angles, system%state, changes)
+      call carry_given_angles(angles, system%state, .false., changes)
       do order = 0, 1
         values(:, :, order) = changes(:, order, free)
       end do

@@ -7,7 +7,7 @@ module mech9_varied_angles
   use mech9_state, only: state_type
   implicit none
   private
-  public :: carry_to_angles, carry_to_given_angles, carry_from_given_angles
+  public :: carry_to_angles, carry_given_angles
 
 contains
 
@@ -36,11 +36,12 @@ contains
     end do
   end subroutine carry_to_angles
 
-  !> Carry derivatives of all coordinates and rates over to the angles of the data file, in which the motion was shown last. No joint may
-  !> stand in gimbal lock.
-  subroutine carry_to_given_angles(angles, state, changes)
+  !> Carry derivatives of all coordinates and rates over to the angles of the data file, in which the motion was shown last, or back from
+  !> these. No joint may stand in gimbal lock.
+  subroutine carry_given_angles(angles, state, to_given, changes)
     class(ball_angles_type), intent(in) :: angles     !< of the system, with the state in the angles of the data file
     class(state_type), intent(in) :: state            !< of the system
+    logical, intent(in) :: to_given                   !< over to these angles; else from them to those of the system
     real(wp), intent(inout) :: changes(:, 0:, :)      !< (P,0:2,M) the derivatives; those of accelerations stay
     integer :: i
 
@@ -48,26 +49,14 @@ contains
     do i = 1, size(angles%joints)
       if (.not. angles%replaced(i)) cycle
       associate (joint => angles%joints(i))
-        call carry(joint%coordinates, joint%substitute, state, joint%given, angles%state, changes)
+        if (to_given) then
+          call carry(joint%coordinates, joint%substitute, state, joint%given, angles%state, changes)
+        else
+          call carry(joint%coordinates, joint%given, angles%state, joint%substitute, state, changes)
+        end if
       end associate
     end do
-  end subroutine carry_to_given_angles
-
-  !> Carry derivatives over from the angles of the data file, in which the motion was shown last. No joint may stand in gimbal lock.
-  subroutine carry_from_given_angles(angles, state, changes)
-    class(ball_angles_type), intent(in) :: angles     !< of the system, with the state in the angles of the data file
-    class(state_type), intent(in) :: state            !< of the system
-    real(wp), intent(inout) :: changes(:, 0:, :)      !< (P,0:2,M) the derivatives; those of accelerations stay
-    integer :: i
-
-    if (.not. angles%in_use()) return
-    do i = 1, size(angles%joints)
-      if (.not. angles%replaced(i)) cycle
-      associate (joint => angles%joints(i))
-        call carry(joint%coordinates, joint%given, angles%state, joint%substitute, state, changes)
-      end associate
-    end do
-  end subroutine carry_from_given_angles
+  end subroutine carry_given_angles
 
   !> Whether other angles move the joint with these coordinates.
   pure logical function replaces(angles, coordinates)
