@@ -130,9 +130,7 @@ contains
     end if
     if (.not. allocated(self%frictions) .or. allocated(err)) return
     call find_frictions(self, err)
-    associate (time => self%model%request%time)
-      call self%turns%begin(self%model%mechanism, self%plan, self%driven%state, sign(1.0_wp, time%end - time%start))
-    end associate
+    call self%turns%begin(self%model%mechanism, self%plan, self%driven%state)
   end subroutine begin
 
   !> The position at time t, on the same branch. Whether the motion shall stop is asked after many steps, too.

@@ -1,7 +1,7 @@
 !> Times of a driven motion at which pairs with friction turn back, where their frictions jump.
 !>
-!> The rate of such a pair passes zero. Its acceleration tells the direction on both sides of a time at which the rate is zero, so that a turn
-!> may lie at either end of a stride. Within a stride, the first one is found by bisection on the motion itself.
+!> The rate of such a pair passes zero. Where it is zero at the end of a stride, the acceleration tells the direction behind; motions with
+!> friction go forwards in time. Within a stride, the first turn is found by bisection on the motion itself.
 module mech9_driven_turns
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -33,17 +33,16 @@ module mech9_driven_turns
 contains
 
   !> Begin at the start of the motion.
-  pure subroutine begin(self, mechanism, plan, state, direction)
+  pure subroutine begin(self, mechanism, plan, state)
     class(driven_turns_type), intent(inout) :: self   !< the turns
     type(mechanism_type), intent(in) :: mechanism     !< the mechanism
     type(plan_type), intent(in) :: plan               !< its plan
     type(state_type), intent(in) :: state             !< the position, with rates and accelerations
-    real(wp), intent(in) :: direction                 !< 1 forwards in time, -1 backwards
 
     self%may_come = .not. all(mechanism%frictions%is_smooth)
     self%end = state%t
     self%is_at_end = .false.
-    self%onward = beside(mechanism, plan, state, direction)
+    self%onward = directions_behind(mechanism, plan, state)
   end subroutine begin
 
   !> Find the first turn between the end of the last stride and the present position, if there is one.
@@ -89,13 +88,11 @@ contains
     type(plan_type), intent(in) :: plan               !< its plan
     type(state_type), intent(in) :: state             !< the position, with rates and accelerations
     real(wp), dimension(size(self%onward)) :: before, behind
-    real(wp) :: direction
 
-    direction = sign(1.0_wp, state%t - self%end)
     self%end = state%t
-    ! a stride that ends at a turn but for round-off ends behind it
-    before = merge(self%onward, beside(mechanism, plan, state, -direction), abs(self%onward) > 0.0_wp)
-    behind = beside(mechanism, plan, state, direction)
+    ! a pair that rested from the start of the stride does not turn back
+    before = self%onward
+    behind = directions_behind(mechanism, plan, state)
     self%onward = behind
     if (allocated(self%sides)) deallocate (self%sides)
     allocate (self%sides(size(behind), 2), source=0.0_wp)
@@ -107,18 +104,17 @@ contains
     self%is_left = .false.
   end subroutine note_end
 
-  !> Directions in which pairs slide just beside a time: those of their rates, or where these are zero, those to which accelerations lead.
-  pure function beside(mechanism, plan, state, direction) result(directions)
+  !> Directions in which pairs slide just behind a time: those of their rates, or where these are zero, those to which accelerations lead.
+  pure function directions_behind(mechanism, plan, state) result(directions)
     type(mechanism_type), intent(in) :: mechanism     !< the mechanism
     type(plan_type), intent(in) :: plan               !< its plan
     type(state_type), intent(in) :: state             !< the position, with rates and accelerations
-    real(wp), intent(in) :: direction                 !< 1 behind the time, -1 before it
     real(wp) :: directions(size(mechanism%frictions))
 
     directions = slip_directions(mechanism, plan, state)
     associate (acceleration => state%ddq(mechanism%frictions%coordinate))
       where (.not. (abs(directions) > 0.0_wp .or. mechanism%frictions%is_smooth) .and. abs(acceleration) > 0.0_wp) &
-        directions = sign(1.0_wp, direction*acceleration)
+        directions = sign(1.0_wp, acceleration)
     end associate
-  end function beside
+  end function directions_behind
 end module mech9_driven_turns
