@@ -13,7 +13,7 @@ module mech9_instant
   use mech9_motion_variation, only: vary_position
   use mech9_linearisation, only: linearisation_type, new_linearisation, find_forces, find_matrix, by_acceleration
   use mech9_motion_in_space, only: place_in_space, refuse_singular_chains
-  use mech9_driven_frictions, only: driven_frictions_type
+  use mech9_driven_frictions, only: driven_frictions_type, slip_directions
   use mech9_forces_by_kind, only: frame_rates_type, find_forces_by_kind, kind_names, by_drives
   implicit none
   private
@@ -114,7 +114,7 @@ contains
     type(driven_frictions_type) :: frictions
 
     if (.not. mechanism%has_frictions() .or. allocated(state%friction)) return
-    call frictions%find(mechanism, plan, state, err)
+    call frictions%find(mechanism, plan, state, slip_directions(mechanism, plan, state), err)
   end subroutine find_frictions
 
   !> Find the mass matrix and the generalized forces.

@@ -290,7 +290,7 @@ contains
     call self%quantities%times_before(self%simulation%model, self%last_output, t, times)
     do i = self%visited + 1, size(times)
       call go_on_with_section(self, times(i), err)
-      if (.not. allocated(err)) call self%simulation%visit(times(i), err)
+      if (.not. allocated(err)) call self%simulation%visit(times(i), .false., err)
       if (.not. allocated(err)) self%visited = i
       if (.not. allocated(err)) call fill_row(self, self%between(:, self%waiting + 1), err)
       if (.not. allocated(err)) call defer(self, .false., t, rows, count, err)
@@ -319,7 +319,7 @@ contains
         call self%simulation%leave_joint(err)
         if (.not. allocated(err)) call self%walk%note_leaving(self%simulation%events%count)
       case (walk_look)
-        call self%simulation%visit(self%walk%time, err)
+        call self%simulation%visit(self%walk%time, .true., err)
         if (.not. allocated(err)) call fill_between(self, 1, err)
         if (.not. allocated(err)) call self%walk%take(self%quantities, self%between(:, 1), self%simulation%events)
       case (walk_pass)

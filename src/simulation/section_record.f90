@@ -396,7 +396,7 @@ contains
     type(error_type), allocatable, intent(out) :: err         !< allocated if it failed
     real(wp), allocatable :: more(:, :), row(:)
 
-    call simulation%visit(t, err)
+    call simulation%visit(t, .false., err)
     if (allocated(err)) return
     allocate (row(filler%width()), source=0.0_wp)
     call filler%fill_values(row, err)

@@ -117,6 +117,7 @@ module mech9_simulation
     procedure :: may_jump => never_jumps
     procedure :: look_at
     procedure :: note_numbers
+    procedure :: note_output => note_no_output
     procedure :: statistics
     procedure :: standing => standing_at_output
     procedure :: plans => no_other_plans
@@ -228,17 +229,24 @@ contains
     call tell_in_units(err, self%model%mechanism)
   end subroutine advance
 
-  !> Go on to a time between two of the results. The position is neither counted nor judged, but for its closure. Fails as
-  !> advance does.
-  subroutine visit(self, t, err)
+  !> Go on to a time between two of the results, or stand at one within the last stride. The position is neither counted nor judged, but
+  !> for its closure. Fails as advance does.
+  subroutine visit(self, t, in_stride, err)
     class(simulation_type), intent(inout), target :: self   !< the simulation, started
-    real(wp), intent(in) :: t                               !< time to go to, not before the present one [s]
+    real(wp), intent(in) :: t                               !< time to go to [s]
+    logical, intent(in) :: in_stride                        !< it lies within the last stride; otherwise not before the present time
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     type(plan_type), pointer :: plan
     type(state_type), pointer :: state
 
     call self%stop_if_interrupted(t, err)
-    if (.not. allocated(err)) call self%go_to(t, err)
+    if (allocated(err)) then
+      continue
+    else if (in_stride) then
+      call self%look_at(t, err)
+    else
+      call self%go_to(t, err)
+    end if
     if (.not. allocated(err)) then
       self%t = t
       self%closure = self%present_closure()
@@ -322,10 +330,16 @@ contains
     if (.not. allocated(err) .and. self%with_error) call take_error(self, err)
     if (allocated(err)) return
     self%positions = self%positions + 1
+    call self%note_output()
     self%worst_closure = max(self%worst_closure, self%closure)
     call self%watch_conditioning(self%with_conditioning)
     if (self%with_energies) call follow_energies(self)
   end subroutine arrive
+
+  !> Note the position that was reached, which is one of the results. There is nothing to note unless a simulation says so.
+  subroutine note_no_output(self)
+    class(simulation_type), intent(inout) :: self       !< the simulation
+  end subroutine note_no_output
 
   !> Keep the estimated error of the position that was reached, and judge it. Fails also where the error is not known, since one
   !> of the runs that estimate the errors could not go on.

@@ -1,4 +1,4 @@
-"""Quantities of driven motions whose pairs turn back with friction: forces jump there, on both sides of which quantities stand.
+"""Quantities of driven motions whose pairs turn back or rest with friction: forces jump there, on both sides of which quantities stand.
 
 Compares the program with itself: few and many outputs."""
 import json
@@ -6,7 +6,7 @@ from math import pi, sqrt
 
 import pytest
 
-from mech9_cases import run
+from mech9_cases import read_table, run, text_of
 
 SLIDER = """&structure cq=1 /
 &pair coordinate=1, links=1,2, kind='prismatic', axis=1,0,0 /
@@ -50,6 +50,59 @@ def test_a_slider(checks, mech9k, tmp_path, phase):
         found = quantities(mech9k, tmp_path, SLIDER.format(phase=phase), 'F1', 2 * pi / 3, intervals)
         # tolerance: sums by Gauss's formula over parts of 0.1 m, and turns to round-off of time
         checks.near(found, wanted, 1e-9, f'least, greatest, mean and rms force with {intervals} intervals', scale=inertia)
+
+
+def greatest_acceleration(law, way, duration):
+    """Of a move from rest to rest; the mean of its square is a half of its square in both laws."""
+    return abs(way)/2*(pi/duration)**2 if law == 'harmonic' else abs(way)*2*pi/duration**2
+
+
+@pytest.mark.parametrize('law', ['harmonic', 'cycloidal'])
+@pytest.mark.parametrize('dwell_first', [False, True])
+def test_moves_from_rest_to_rest(checks, mech9k, tmp_path, law, dwell_first):
+    """A pair with friction begins to move at the start or behind a dwell, and comes to rest before a dwell or at the end.
+
+    Friction counts from the first moment of a move to its last one, and as zero in dwells, where nothing else acts."""
+    if dwell_first:
+        drive = f"times=0,0.5,1, values=0,0,0.2, laws='dwell','{law}'"
+        moves = [(0.2, 0.5)]
+        end = 1
+    else:
+        drive = f"times=0,0.5,0.9,1.9, values=0,0.2,0.2,-0.1, laws='{law}','dwell','{law}'"
+        moves = [(0.2, 0.5), (-0.3, 1.0)]
+        end = 1.9
+    text = ''.join(line if 'drive' not in line else f"&drive coordinate=1, kind='segments', {drive} /\n"
+                   for line in SLIDER.splitlines(keepends=True))
+    friction = 0.3 * 2 * 9.81
+    greatest = [greatest_acceleration(law, way, duration) for way, duration in moves]
+    signs = [1 if way > 0 else -1 for way, _ in moves]
+    # the acceleration of a move has the mean 0, and friction its constant sign
+    square = sum((2*a**2 + friction**2)*duration for a, (_, duration) in zip(greatest, moves))
+    wanted = [min(-2*a + s*friction for a, s in zip(greatest, signs)), max(2*a + s*friction for a, s in zip(greatest, signs)),
+              sum(s*friction*duration for s, (_, duration) in zip(signs, moves))/end, sqrt(square/end)]
+    for intervals in (2, 7, 38):
+        found = quantities(mech9k, tmp_path, text, 'F1', end, intervals)
+        # tolerance: sums by Gauss's formula over parts of 0.1 m
+        checks.near(found, wanted, 1e-9, f'least, greatest, mean and rms force with {intervals} intervals', scale=greatest[0])
+
+
+def test_rows_at_rest(checks, mech9k, tmp_path):
+    """Rows have the force behind the start of a move, and at its end that before; where the pair turns back, friction counts as zero."""
+    path = tmp_path / 'rest.nml'
+    for law, times in (("kind='segments', times=0,0.5,1, values=0,0,0.2, laws='dwell','harmonic'", [0.25, 0.5, 1]),
+                       ("kind='harmonic', amplitude=0.2, angular_frequency=6.283185307179586, phase=-1.5707963267948966", [0, 0.5, 1])):
+        text = ''.join(line if 'drive' not in line else f'&drive coordinate=1, {law} /\n' for line in SLIDER.splitlines(keepends=True))
+        path.write_text(text + '&time end=1, intervals=4 /\n&output drive_forces=.true., reactions=.true. /\n', encoding='utf-8')
+        done = run(mech9k, path, '--table', tmp_path / 'rest.dat')
+        assert done.returncode == 0, done.stderr
+        table = read_table(text_of(tmp_path / 'rest.dat'))
+        friction = [-table['R1.friction'][round(4*t)] for t in times]
+        if 'segments' in law:
+            checks.near(friction, [0, 0.3*2*9.81, 0.3*2*9.81], 1e-12, 'friction in a dwell, at its end, and at the end', scale=1)
+            assert 'at rest at 2 outputs' in done.stderr + done.stdout
+        else:
+            checks.near(friction, [0.3*2*9.81, 0, -0.3*2*9.81], 1e-12, 'friction at the start, at a turn and at the end', scale=1)
+            assert 'at rest at 1 output,' in done.stderr + done.stdout
 
 
 @pytest.mark.parametrize('column', ['R3.fx', 'R4.fx', 'F1'])

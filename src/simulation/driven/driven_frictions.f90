@@ -33,8 +33,7 @@ module mech9_driven_frictions
     type(friction_balance_type), private :: balance
     real(wp), allocatable, private :: ratios(:)   !< (frictions) rates of their coordinates by that of the first drive
     type(rest_range_type) :: rest
-    real(wp), allocatable :: given(:)             !< (frictions) directions of pairs that turn back at the present time, on the side that
-                                                  !< is looked at; 0: that of the rate. Not allocated elsewhere
+    logical :: at_rest = .false.                  !< any pair with friction is at rest in the last position
   contains
     procedure :: find
     procedure, private :: find_rest_range
@@ -43,11 +42,12 @@ module mech9_driven_frictions
 contains
 
   !> Find the frictions in a state whose frames have their accelerations. Fails where no drive force moves the mechanism this way.
-  subroutine find(self, mechanism, plan, state, err)
+  subroutine find(self, mechanism, plan, state, directions, err)
     class(driven_frictions_type), intent(inout) :: self   !< the frictions
     type(mechanism_type), intent(in) :: mechanism         !< the mechanism
     type(plan_type), intent(in) :: plan                   !< its plan, with all blocks
     type(state_type), intent(inout) :: state              !< the state; gets the frictions
+    real(wp), intent(in) :: directions(:)                 !< (frictions) in which pairs slide; 0: at rest, or smooth
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
     type(friction_modes_type) :: modes
     integer :: i
@@ -61,18 +61,15 @@ contains
         self%balance = new_friction_balance(size(frictions))
       end if
       modes = new_friction_modes(size(frictions))
-      modes%direction = slip_directions(mechanism, plan, state)
-      if (allocated(self%given)) modes%direction = merge(self%given, modes%direction, abs(self%given) > 0.0_wp)
+      modes%direction = directions
       do i = 1, size(frictions)
         if (frictions(i)%is_smooth) modes%direction(i) = tanh(state%dq(frictions(i)%coordinate)/frictions(i)%transition)
       end do
       call find_balance(self, mechanism, plan, state, err)
       if (allocated(err)) return
-      if (any(.not. (abs(modes%direction) > 0.0_wp .or. frictions%is_smooth))) then
-        if (self%rest%outputs == 0) call self%find_rest_range(mechanism, plan, state, err)
-        if (allocated(err)) return
-        self%rest%outputs = self%rest%outputs + 1
-      end if
+      self%at_rest = any(.not. (abs(modes%direction) > 0.0_wp .or. frictions%is_smooth))
+      if (self%at_rest .and. self%rest%outputs == 0) call self%find_rest_range(mechanism, plan, state, err)
+      if (allocated(err)) return
       call balance%solve(frictions, modes, solved)
       unique = solved
       if (solved) unique = balance%least_determinant(frictions, modes) > 0.0_wp

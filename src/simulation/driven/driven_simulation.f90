@@ -21,8 +21,8 @@ module mech9_driven_simulation
   use mech9_stop_contacts, only: stop_contacts_type, find_contacts
   use mech9_clear_stops, only: clear_stops_type
   use mech9_driven_stops, only: check_stops
-  use mech9_driven_frictions, only: driven_frictions_type
-  use mech9_driven_turns, only: driven_turns_type
+  use mech9_driven_frictions, only: driven_frictions_type, slip_directions
+  use mech9_driven_turns, only: driven_turns_type, directions_beside, directions_at_rest
   use mech9_simulation, only: simulation_type, simulation_statistics_type, standing_type
   implicit none
   private
@@ -51,6 +51,7 @@ module mech9_driven_simulation
     procedure :: leave_joint
     procedure :: may_jump
     procedure :: look_at
+    procedure :: note_output
     procedure :: present => present_state
     procedure :: present_for_forces
     procedure :: present_closure
@@ -66,6 +67,8 @@ module mech9_driven_simulation
   real(wp), parameter :: longest_way = 0.1_wp
   !> Longest way of a drive between two looks at the gaps of stops and contacts, in the unit of its coordinate.
   real(wp), parameter :: longest_unseen = 0.25_wp
+  !> Part of a way at whose end a pair that rested at its beginning is looked at.
+  real(wp), parameter :: beside_part = 1.0e-2_wp
 
 contains
 
@@ -129,8 +132,8 @@ contains
       call self%clear%begin(self%contacts, self%plan, self%driven%state)
     end if
     if (.not. allocated(self%frictions) .or. allocated(err)) return
-    call find_frictions(self, err)
-    call self%turns%begin(self%model%mechanism, self%plan, self%driven%state)
+    call self%turns%begin(self%model%mechanism, t, directions_behind(self))
+    call find_frictions(self, counting_directions(self), err)
   end subroutine begin
 
   !> The position at time t, on the same branch. Whether the motion shall stop is asked after many steps, too.
@@ -140,8 +143,48 @@ contains
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
 
     call move_to(self, t, err)
-    if (allocated(self%frictions) .and. .not. allocated(err)) call find_frictions(self, err)
+    if (allocated(self%frictions) .and. .not. allocated(err)) call find_frictions(self, counting_directions(self), err)
   end subroutine go_to
+
+  !> Directions in which the frictions of pairs count at the present position.
+  function counting_directions(self) result(directions)
+    class(driven_simulation_type), intent(in) :: self   !< the simulation
+    real(wp) :: directions(size(self%model%mechanism%frictions)), before(size(self%model%mechanism%frictions))
+
+    associate (mechanism => self%model%mechanism, time => self%model%request%time)
+      call directions_beside(mechanism, self%plan, self%angles%held%drives, self%driven, time_towards(self, time%start), before)
+      directions = directions_at_rest(before, directions_behind(self), .not. abs(time%end - self%driven%state%t) > 0.0_wp)
+    end associate
+  end function counting_directions
+
+  !> Directions of pairs with friction behind the present position; at the end of the motion, those of their rates.
+  function directions_behind(self) result(directions)
+    class(driven_simulation_type), intent(in) :: self   !< the simulation
+    real(wp) :: directions(size(self%model%mechanism%frictions))
+
+    call directions_beside(self%model%mechanism, self%plan, self%angles%held%drives, self%driven, &
+                           time_towards(self, self%model%request%time%end), directions)
+  end function directions_behind
+
+  !> A time a little beside the present one, towards another; the present one if they are the same [s].
+  real(wp) function time_towards(self, other) result(time)
+    class(driven_simulation_type), intent(in) :: self   !< the simulation
+    real(wp), intent(in) :: other                       !< the other time [s]
+
+    associate (t => self%driven%state%t)
+      time = t
+      if (abs(other - t) > 0.0_wp) &
+        time = t + beside_part*(end_of_way(self%model%problem%drives, self%plan, longest_way, t, other) - t)
+    end associate
+  end function time_towards
+
+  !> Count an output at which pairs with friction are at rest.
+  subroutine note_output(self)
+    class(driven_simulation_type), intent(inout) :: self   !< the simulation
+
+    if (.not. allocated(self%frictions)) return
+    if (self%frictions%at_rest) self%frictions%rest%outputs = self%frictions%rest%outputs + 1
+  end subroutine note_output
 
   !> Move to the position at time t, whose frictions are not found yet.
   subroutine move_to(self, t, err)
@@ -205,7 +248,11 @@ contains
       call self%turns%find_first(self%model%mechanism, self%plan, self%angles%held%drives, self%driven, next)
       call move_to(self, next, err)
       if (allocated(err)) return
-      call self%turns%note_end(self%model%mechanism, self%plan, self%driven%state)
+      if (abs(self%model%request%time%end - next) > 0.0_wp) then
+        call self%turns%note_end(next, directions_behind(self))
+      else
+        call self%turns%note_end(next)
+      end if
       at_joint = self%turns%is_at_end
     end if
     to = next
@@ -243,23 +290,24 @@ contains
     class(driven_simulation_type), intent(inout) :: self   !< the simulation, started
     real(wp), intent(in) :: t                              !< the time [s]
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
-    logical :: at_turn
 
-    at_turn = self%turns%is_at_end .and. .not. abs(t - self%turns%end) > 0.0_wp
-    if (at_turn) self%frictions%given = self%turns%sides(:, merge(2, 1, self%turns%is_left))
-    call self%go_to(t, err)
-    if (at_turn) deallocate (self%frictions%given)
+    call move_to(self, t, err)
+    if (.not. allocated(self%frictions) .or. allocated(err)) return
+    associate (slipping => slip_directions(self%model%mechanism, self%plan, self%driven%state))
+      call find_frictions(self, self%turns%directions_in(t, slipping), err)
+    end associate
   end subroutine look_at
 
   !> Find the frictions at the present time.
-  subroutine find_frictions(self, err)
+  subroutine find_frictions(self, directions, err)
     class(driven_simulation_type), intent(inout) :: self   !< the simulation
+    real(wp), intent(in) :: directions(:)                  !< (frictions) in which pairs slide; 0: at rest, or smooth
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
 
     if (self%angles%in_use() .and. .not. self%angles%give_same_wrenches()) then
-      call self%frictions%find(self%model%mechanism, self%angles%plan, self%angles%state, err)
+      call self%frictions%find(self%model%mechanism, self%angles%plan, self%angles%state, directions, err)
     else
-      call self%frictions%find(self%model%mechanism, self%plan, self%driven%state, err)
+      call self%frictions%find(self%model%mechanism, self%plan, self%driven%state, directions, err)
       if (self%angles%in_use()) self%angles%state%friction = self%driven%state%friction
     end if
   end subroutine find_frictions

@@ -1,7 +1,7 @@
-!> Times of a driven motion at which pairs with friction turn back, where their frictions jump.
+!> Times of a driven motion at which pairs with friction turn back, begin to move, or come to rest: their frictions jump there.
 !>
-!> The rate of such a pair passes zero. Where it is zero at the end of a stride, the acceleration tells the direction behind; motions with
-!> friction go forwards in time. Within a stride, the first turn is found by bisection on the motion itself.
+!> The rate of such a pair is zero at these times, so that it tells no direction. Positions a little before and behind do. Within a stride,
+!> the first turn is found by bisection on the motion itself.
 module mech9_driven_turns
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
@@ -14,35 +14,37 @@ module mech9_driven_turns
   use mech9_driven_frictions, only: slip_directions
   implicit none
   private
-  public :: driven_turns_type
+  public :: driven_turns_type, directions_beside, directions_at_rest
 
   !> The end of the last stride, and the turns there.
   type :: driven_turns_type
     logical :: may_come = .false.                    !< frictions jump where pairs turn back
     real(wp) :: end = 0.0_wp                         !< of the last stride [s]
-    logical :: is_at_end = .false.                   !< pairs turn back there
-    logical :: is_left = .false.                     !< the motion is looked at behind these turns
-    real(wp), allocatable :: sides(:, :)             !< (frictions,2) directions of those pairs before and behind it; 0: other pairs
-    real(wp), allocatable, private :: onward(:)      !< (frictions) directions of all pairs behind the end; 0: they rest, or are smooth
+    logical :: is_at_end = .false.                   !< directions change there
+    logical :: is_left = .false.                     !< the motion is looked at behind this change
+    real(wp), allocatable, private :: sides(:, :)    !< (frictions,2) directions of all pairs before and behind the end; 0: they rest, or
+                                                     !< are smooth
   contains
     procedure :: begin
     procedure :: find_first
     procedure :: note_end
+    procedure :: directions_in
   end type driven_turns_type
 
 contains
 
   !> Begin at the start of the motion.
-  pure subroutine begin(self, mechanism, plan, state)
+  pure subroutine begin(self, mechanism, t, behind)
     class(driven_turns_type), intent(inout) :: self   !< the turns
     type(mechanism_type), intent(in) :: mechanism     !< the mechanism
-    type(plan_type), intent(in) :: plan               !< its plan
-    type(state_type), intent(in) :: state             !< the position, with rates and accelerations
+    real(wp), intent(in) :: t                         !< time of the start [s]
+    real(wp), intent(in) :: behind(:)                 !< (frictions) directions of all pairs behind it; 0: they rest, or are smooth
 
     self%may_come = .not. all(mechanism%frictions%is_smooth)
-    self%end = state%t
-    self%is_at_end = .false.
-    self%onward = directions_behind(mechanism, plan, state)
+    if (allocated(self%sides)) deallocate (self%sides)
+    allocate (self%sides(size(behind), 2))
+    self%sides(:, 2) = behind
+    call self%note_end(t, behind)
   end subroutine begin
 
   !> Find the first turn between the end of the last stride and the present position, if there is one.
@@ -77,44 +79,76 @@ contains
     pure logical function turns_back(state)
       type(state_type), intent(in) :: state   !< a state
 
-      turns_back = any(self%onward*slip_directions(mechanism, plan, state) < 0.0_wp)
+      turns_back = any(self%sides(:, 2)*slip_directions(mechanism, plan, state) < 0.0_wp)
     end function turns_back
   end subroutine find_first
 
-  !> Note the end of a stride, at which the motion stands, with the pairs that turn back there.
-  pure subroutine note_end(self, mechanism, plan, state)
+  !> Note the end of a stride, at which the motion stands.
+  pure subroutine note_end(self, t, behind)
     class(driven_turns_type), intent(inout) :: self   !< the turns up to the start of the stride
-    type(mechanism_type), intent(in) :: mechanism     !< the mechanism
-    type(plan_type), intent(in) :: plan               !< its plan
-    type(state_type), intent(in) :: state             !< the position, with rates and accelerations
-    real(wp), dimension(size(self%onward)) :: before, behind
+    real(wp), intent(in) :: t                         !< time of its end [s]
+    real(wp), intent(in), optional :: behind(:)       !< (frictions) directions of all pairs behind it; 0: they rest, or are smooth. Given
+                                                      !< unless the motion ends there
 
-    self%end = state%t
-    ! a pair that rested from the start of the stride does not turn back
-    before = self%onward
-    behind = directions_behind(mechanism, plan, state)
-    self%onward = behind
-    if (allocated(self%sides)) deallocate (self%sides)
-    allocate (self%sides(size(behind), 2), source=0.0_wp)
-    where (before*behind < 0.0_wp)
-      self%sides(:, 1) = before
-      self%sides(:, 2) = behind
-    end where
-    self%is_at_end = any(abs(self%sides) > 0.0_wp)
+    self%end = t
+    self%sides(:, 1) = self%sides(:, 2)
+    if (present(behind)) self%sides(:, 2) = behind
+    self%is_at_end = any(abs(self%sides(:, 2) - self%sides(:, 1)) > 0.0_wp)
     self%is_left = .false.
   end subroutine note_end
 
-  !> Directions in which pairs slide just behind a time: those of their rates, or where these are zero, those to which accelerations lead.
-  pure function directions_behind(mechanism, plan, state) result(directions)
-    type(mechanism_type), intent(in) :: mechanism     !< the mechanism
-    type(plan_type), intent(in) :: plan               !< its plan
-    type(state_type), intent(in) :: state             !< the position, with rates and accelerations
-    real(wp) :: directions(size(mechanism%frictions))
+  !> Directions of all pairs at a time within the last stride; at its end, on one side of it.
+  pure function directions_in(self, t, slipping) result(directions)
+    class(driven_turns_type), intent(in) :: self      !< the turns
+    real(wp), intent(in) :: t                         !< the time [s]
+    real(wp), intent(in) :: slipping(:)               !< (frictions) directions of the rates at this time; 0: at rest, or smooth
+    real(wp) :: directions(size(slipping))
+    logical :: changes
 
-    directions = slip_directions(mechanism, plan, state)
-    associate (acceleration => state%ddq(mechanism%frictions%coordinate))
-      where (.not. (abs(directions) > 0.0_wp .or. mechanism%frictions%is_smooth) .and. abs(acceleration) > 0.0_wp) &
-        directions = sign(1.0_wp, acceleration)
+    changes = self%is_at_end .and. .not. abs(t - self%end) > 0.0_wp
+    associate (side => self%sides(:, merge(2, 1, changes .and. self%is_left)))
+      directions = merge(side, slipping, abs(side) > 0.0_wp .and. (changes .or. .not. abs(slipping) > 0.0_wp))
     end associate
-  end function directions_behind
+  end function directions_in
+
+  !> Directions of all pairs a little before or behind the present position. Pairs that rest at that time, too, have none.
+  subroutine directions_beside(mechanism, plan, drives, driven, time, directions)
+    type(mechanism_type), intent(in) :: mechanism      !< the mechanism
+    type(plan_type), intent(in) :: plan                !< its plan
+    type(drive_slot_type), intent(in) :: drives(:)     !< the drives
+    type(driven_motion_type), intent(in) :: driven     !< the motion, at this position
+    real(wp), intent(in) :: time                       !< the time before or behind; that of the position: there is none [s]
+    real(wp), intent(out) :: directions(:)             !< (frictions) -1, 1; 0: at rest, or smooth
+    type(driven_motion_type) :: other
+    type(error_type), allocatable :: failure
+
+    directions = slip_directions(mechanism, plan, driven%state)
+    if (.not. any_rests(mechanism, directions) .or. .not. abs(time - driven%state%t) > 0.0_wp) return
+    call copy_driven_motion(driven, other)
+    call advance(drives, plan, other, time, failure)
+    ! a motion that ends here has no direction behind
+    if (allocated(failure)) return
+    directions = merge(directions, slip_directions(mechanism, plan, other%state), abs(directions) > 0.0_wp)
+  end subroutine directions_beside
+
+  !> Directions that count in a single position: of a pair at rest, that in which it begins to move; at the end of the motion, that in which
+  !> it came. A pair that turns back has none.
+  pure function directions_at_rest(before, behind, is_last) result(directions)
+    real(wp), intent(in) :: before(:)   !< (frictions) directions of all pairs before; 0: they rest, or are smooth
+    real(wp), intent(in) :: behind(:)   !< (frictions) behind
+    logical, intent(in) :: is_last      !< the motion ends there
+    real(wp) :: directions(size(before))
+
+    directions = behind
+    if (is_last) directions = before
+    where (before*behind < 0.0_wp) directions = 0.0_wp
+  end function directions_at_rest
+
+  !> Whether any pair rests whose friction jumps.
+  pure logical function any_rests(mechanism, directions)
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+    real(wp), intent(in) :: directions(:)           !< (frictions) of its pairs
+
+    any_rests = any(.not. (abs(directions) > 0.0_wp .or. mechanism%frictions%is_smooth))
+  end function any_rests
 end module mech9_driven_turns
