@@ -3,7 +3,8 @@
 module test_cam_curves
   use mech9_kinds, only: wp, pi
   use mech9_differentiation, only: half_width, derivatives_from_stencil
-  use mech9_cam_curves, only: curve_number, cam_curve, cam_third, steepest_slope_of, curve_names
+  use mech9_cam_curves, only: curve_number, cam_curve, cam_third, steepest_slope_of, curve_names, find_inner_joints, &
+    most_inner_joints
   use mech9_testing, only: tester_type
   implicit none
   private
@@ -18,6 +19,7 @@ contains
     if (test%runs('names')) call names(test)
     if (test%runs('ends')) call ends(test)
     if (test%runs('derivatives')) call derivatives(test)
+    if (test%runs('joints')) call joints(test)
     if (test%runs('slopes')) call slopes(test)
     if (test%runs('polynomials')) call polynomials(test)
   end subroutine run
@@ -85,6 +87,25 @@ contains
       end do
     end do
   end subroutine derivatives
+
+  !> Fourth derivatives jump at the inner joints, and at no other multiple of 1/16 within the law.
+  subroutine joints(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    real(wp), parameter :: h = 1.0e-5_wp
+    real(wp) :: parts(most_inner_joints), x, jump
+    integer :: k, i, n
+
+    do k = 1, size(curve_names)
+      call find_inner_joints(k, parts, n)
+      do i = 1, 15
+        x = i/16.0_wp
+        jump = (cam_third(k, x + h) - 2.0_wp*cam_third(k, x) + cam_third(k, x - h))/h
+        ! fourth derivatives are of order 1000, and change by h times the fifth ones elsewhere
+        call test%is_true((abs(jump) > 10.0_wp) .eqv. any(abs(parts(:n) - x) < epsilon(x)), &
+                          trim(curve_names(k))//': jumps of the fourth derivative')
+      end do
+    end do
+  end subroutine joints
 
   !> The steepest slope is reached and not passed; textbooks give it: pi/2, 2, 15/8, 35/16, 1.76, 2.
   subroutine slopes(test)

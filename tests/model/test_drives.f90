@@ -9,6 +9,8 @@ module test_drives
   use mech9_polynomial_law, only: polynomial_law_type
   use mech9_harmonic_law, only: harmonic_law_type
   use mech9_table_law, only: table_law_type
+  use mech9_segments_law, only: segments_law_type
+  use mech9_cam_curves, only: curve_number
   use mech9_request, only: time_grid_type
   use mech9_testing, only: tester_type
   implicit none
@@ -30,6 +32,7 @@ contains
     if (test%runs('table_of_sine')) call table_of_sine(test)
     if (test%runs('ends_of_table')) call ends_of_table(test)
     if (test%runs('time_grid')) call time_grid(test)
+    if (test%runs('joints_of_segments')) call joints_of_segments(test)
   end subroutine run
 
   real(wp) function value_at(test, drive, t)
@@ -203,4 +206,37 @@ contains
       call test%near(grid%time(i) - grid%time(i - 1), 0.6_wp/7.0_wp, 2.0e-16_wp, 'times are evenly spaced')
     end do
   end subroutine time_grid
+
+  !> Joints of a law that repeats: ends of segments, and eighths of those with modified laws. Their times change with those of the ends.
+  subroutine joints_of_segments(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(segments_law_type) :: law, moved
+    real(wp), parameter :: change(6) = [0.1_wp, -0.2_wp, 0.3_wp, 0.0_wp, 0.0_wp, 0.0_wp], step = 1.0e-6_wp
+    real(wp) :: t, later
+    integer :: i
+
+    law%times = [0.0_wp, 0.5_wp, 4.5_wp]
+    law%values = [0.0_wp, 0.0_wp, 1.0_wp]
+    law%curves = [curve_number('dwell'), curve_number('modified-trapezoidal')]
+    law%repeats = .true.
+    moved = law
+    moved%times = law%times + step*change(:3)
+    t = 0.25_wp
+    do i = 1, 12
+      later = law%next_joint(t, 1.0_wp)
+      call test%near(later, joint_number(i), 1.0e-14_wp, 'the next joint')
+      call test%near(law%next_joint(later + 0.1_wp, -1.0_wp), later, 1.0e-14_wp, 'the joint before')
+      ! times are linear in the ends: round-off of 10/step
+      call test%near(law%joint_rate(change, later), (moved%next_joint(t, 1.0_wp) - later)/step, 1.0e-8_wp, 'its derivative')
+      t = 0.5_wp*(later + joint_number(i + 1))
+    end do
+  contains
+    !> The joints in their order: in each period of 4.5 s the end of the dwell, four eighths, and the end.
+    pure real(wp) function joint_number(i) result(time)
+      integer, intent(in) :: i   !< 1 for the first one
+      real(wp), parameter :: in_period(6) = [0.5_wp, 1.0_wp, 2.0_wp, 3.0_wp, 4.0_wp, 4.5_wp]
+
+      time = in_period(modulo(i - 1, 6) + 1) + 4.5_wp*((i - 1)/6)
+    end function joint_number
+  end subroutine joints_of_segments
 end module test_drives

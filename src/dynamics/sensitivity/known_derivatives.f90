@@ -75,8 +75,8 @@ contains
     joint = model%request%time%start
     direction = sign(1.0_wp, model%request%time%end - joint)
     duration = abs(model%request%time%end - joint)
-    ! all joints of one period have this many at most
-    do i = 1, size(numbers) + 1
+    ! all joints of one period have this many at most: those between segments, and four in each
+    do i = 1, 3*size(numbers)
       joint = law%next_joint(joint, direction)
       if ((joint - model%request%time%end)*direction > 0.0_wp) return
       call law%evaluate(from_inside(joint, -direction), before(1), before(2), before(3), err)

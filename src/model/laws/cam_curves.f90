@@ -4,10 +4,13 @@ module mech9_cam_curves
   use mech9_kinds, only: wp, pi
   implicit none
   private
-  public :: curve_names, curve_number, cam_curve, cam_third, steepest_slope_of
+  public :: curve_names, curve_number, cam_curve, cam_third, steepest_slope_of, find_inner_joints, most_inner_joints
 
   character(len=20), parameter :: curve_names(8) = [character(len=20) :: 'dwell', 'constant-velocity', 'harmonic', 'cycloidal', &
                                                     'polynomial345', 'polynomial4567', 'modified-sine', 'modified-trapezoidal']
+
+  !> Most jumps of the fourth derivative between the ends of a law.
+  integer, parameter :: most_inner_joints = 4
 
 contains
 
@@ -36,6 +39,19 @@ contains
     dds = -dds
     if (number == 1) s = 0.0_wp
   end subroutine cam_curve
+
+  !> The parts of the time between its ends at which the fourth derivative of a law jumps.
+  pure subroutine find_inner_joints(number, parts, n)
+    integer, intent(in) :: number                        !< of the law in curve_names
+    real(wp), intent(out) :: parts(most_inner_joints)    !< the first n of them, in their order
+    integer, intent(out) :: n                            !< how many there are
+
+    parts = [0.125_wp, 0.375_wp, 0.625_wp, 0.875_wp]
+    n = 0
+    if (number == 7) parts(2) = parts(4)
+    if (number == 7) n = 2
+    if (number == 8) n = 4
+  end subroutine find_inner_joints
 
   !> The third derivative of a law; where it jumps, that of the part after it in the first half of the time.
   pure real(wp) function cam_third(number, x) result(third)

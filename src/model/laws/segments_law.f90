@@ -6,7 +6,7 @@ module mech9_segments_law
   use mech9_kinds, only: wp
   use mech9_error, only: error_type
   use mech9_law, only: law_type, refuse_time, repetition_type, stands_still, repeats_after, never_repeats
-  use mech9_cam_curves, only: cam_curve, cam_third, steepest_slope_of
+  use mech9_cam_curves, only: cam_curve, cam_third, steepest_slope_of, find_inner_joints, most_inner_joints
   use mech9_cam_integrals, only: cam_integrals
   implicit none
   private
@@ -192,13 +192,13 @@ contains
     end function overlaps
   end function greatest_rate
 
-  !> The next end of a segment.
+  !> The next end of a segment, or time within one at which the fourth derivative of its law jumps.
   pure real(wp) function next_joint(self, t, direction)
     class(segments_law_type), intent(in) :: self   !< the law
     real(wp), intent(in) :: t                      !< time; a joint there does not count [s]
     real(wp), intent(in) :: direction              !< +1 for later times, -1 for earlier ones
-    real(wp) :: period, joint, least
-    integer :: i, round
+    real(wp) :: period, joint, least, parts(0:most_inner_joints)
+    integer :: i, k, n, round
 
     next_joint = sign(huge(t), direction)
     period = self%times(size(self%times)) - self%times(1)
@@ -206,26 +206,61 @@ contains
     do round = -1, 1
       if (round /= 0 .and. .not. self%repeats) cycle
       do i = 1, size(self%times)
-        joint = self%times(i) + (self%rounds_before(t) + round)*period
-        if ((joint - t)*direction > least .and. (next_joint - joint)*direction > 0.0_wp) next_joint = joint
+        call find_parts(self, i, parts, n)
+        do k = 0, n
+          joint = time_of(self, i, parts(k)) + (self%rounds_before(t) + round)*period
+          if ((joint - t)*direction > least .and. (next_joint - joint)*direction > 0.0_wp) next_joint = joint
+        end do
       end do
     end do
   end function next_joint
 
-  !> The derivative of the time of an end of a segment by one parameter. In later periods the duration of these counts, too.
+  !> The joints of the segment behind a time, in parts of its duration. The last time has no segment.
+  pure subroutine find_parts(self, i, parts, n)
+    class(segments_law_type), intent(in) :: self           !< the law
+    integer, intent(in) :: i                               !< number of the time
+    real(wp), intent(out) :: parts(0:most_inner_joints)    !< 0 for this time itself, then n others
+    integer, intent(out) :: n                              !< how many joints there are within the segment
+
+    parts = 0.0_wp
+    n = 0
+    if (i <= size(self%curves)) call find_inner_joints(self%curves(i), parts(1:), n)
+  end subroutine find_parts
+
+  !> A time in the segment behind another one [s].
+  pure real(wp) function time_of(self, i, part)
+    class(segments_law_type), intent(in) :: self   !< the law
+    integer, intent(in) :: i                       !< number of the time
+    real(wp), intent(in) :: part                   !< of the segment's duration; 0 at its beginning
+
+    time_of = self%times(i)
+    if (part > 0.0_wp) time_of = time_of + part*(self%times(i + 1) - self%times(i))
+  end function time_of
+
+  !> The derivative of the time of a joint by one parameter. In later periods the duration of these counts, too.
   pure real(wp) function joint_rate(self, change, joint)
     class(segments_law_type), intent(in) :: self   !< the law
     real(wp), intent(in) :: change(:)              !< (2n+2) derivatives of the times, then of the values
-    real(wp), intent(in) :: joint                  !< time of the end [s]
-    real(wp) :: period, rounds
-    integer :: i, n
+    real(wp), intent(in) :: joint                  !< time of the joint [s]
+    real(wp) :: period, rounds, distance, nearest, parts(0:most_inner_joints)
+    integer :: i, k, n, inside
 
     n = size(self%curves)
     period = self%times(n + 1) - self%times(1)
-    ! a time in the first half of the segment behind it gives its period without round-off
-    rounds = self%rounds_before(joint + 0.5_wp*minval(self%times(2:) - self%times(:n)))
-    i = minloc(abs(self%times(:n + 1) + rounds*period - joint), dim=1)
-    joint_rate = change(i) + rounds*(change(n + 1) - change(1))
+    ! a time in the part behind it gives its period without round-off
+    rounds = self%rounds_before(joint + 0.0625_wp*minval(self%times(2:) - self%times(:n)))
+    joint_rate = 0.0_wp
+    nearest = huge(nearest)
+    do i = 1, n + 1
+      call find_parts(self, i, parts, inside)
+      do k = 0, inside
+        distance = abs(time_of(self, i, parts(k)) + rounds*period - joint)
+        if (.not. distance < nearest) cycle
+        nearest = distance
+        joint_rate = change(i) + rounds*(change(n + 1) - change(1))
+        if (k > 0) joint_rate = joint_rate + parts(k)*(change(i + 1) - change(i))
+      end do
+    end do
   end function joint_rate
 
   !> The law, its integral from the first time, and the integral of this one.
