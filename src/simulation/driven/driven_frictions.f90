@@ -7,7 +7,7 @@ module mech9_driven_frictions
   use mech9_event_tolerances, only: at_rest
   use mech9_integration_failures, only: failure_no_friction
   use mech9_driven_failures, only: failure_self_locking
-  use mech9_friction, only: friction_type
+  use mech9_friction, only: friction_type, bearing_terms
   use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
@@ -17,7 +17,7 @@ module mech9_driven_frictions
     new_friction_modes
   implicit none
   private
-  public :: driven_frictions_type, rest_range_type, slip_directions
+  public :: driven_frictions_type, rest_range_type, slip_directions, any_turns_round
 
   !> The first output at which pairs with friction are at rest, and how many there are.
   type :: rest_range_type
@@ -36,8 +36,12 @@ module mech9_driven_frictions
     logical :: at_rest = .false.                  !< any pair with friction is at rest in the last position
   contains
     procedure :: find
+    procedure :: bearing_terms_of
     procedure, private :: find_rest_range
   end type driven_frictions_type
+
+  !> A term of a bearing load below this part of all its terms may be round-off.
+  real(wp), parameter :: round_off_of_terms = 1.0e-10_wp
 
 contains
 
@@ -80,6 +84,35 @@ contains
       end if
     end associate
   end subroutine find
+
+  !> The terms of the bearing loads of all pairs in the last position.
+  pure subroutine bearing_terms_of(self, frictions, terms)
+    class(driven_frictions_type), intent(in) :: self                     !< the frictions, found
+    type(friction_type), intent(in) :: frictions(:)                      !< (n) the same in the mechanism
+    real(wp), intent(out) :: terms(2, bearing_terms, size(frictions))    !< vectors whose magnitudes make a bearing load [N]
+    integer :: i
+
+    do i = 1, size(frictions)
+      terms(:, :, i) = self%balance%bearing_terms_of(frictions(i), i, self%balance%force)
+    end do
+  end subroutine bearing_terms_of
+
+  !> Whether a term of a bearing load turns round between two positions. Its magnitude, and friction with it, has a kink between them.
+  pure logical function any_turns_round(before, behind)
+    real(wp), intent(in) :: before(:, :, :)   !< (2,terms,frictions) vectors in the first position [N]
+    real(wp), intent(in) :: behind(:, :, :)   !< (2,terms,frictions) in the second one [N]
+    real(wp) :: least
+    integer :: i, k
+
+    any_turns_round = .false.
+    do i = 1, size(before, 3)
+      least = round_off_of_terms*max(norm2(before(:, :, i)), norm2(behind(:, :, i)))
+      do k = 1, size(before, 2)
+        if (min(norm2(before(:, k, i)), norm2(behind(:, k, i))) > least) &
+          any_turns_round = any_turns_round .or. dot_product(before(:, k, i), behind(:, k, i)) < 0.0_wp
+      end do
+    end do
+  end function any_turns_round
 
   !> Directions in which pairs slide, by their rates; 0 at rest, and where the friction is smooth.
   pure function slip_directions(mechanism, plan, state) result(directions)

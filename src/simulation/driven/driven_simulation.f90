@@ -21,7 +21,8 @@ module mech9_driven_simulation
   use mech9_stop_contacts, only: stop_contacts_type, find_contacts
   use mech9_clear_stops, only: clear_stops_type
   use mech9_driven_stops, only: check_stops
-  use mech9_driven_frictions, only: driven_frictions_type, slip_directions
+  use mech9_friction, only: bearing_terms
+  use mech9_driven_frictions, only: driven_frictions_type, slip_directions, any_turns_round
   use mech9_driven_turns, only: driven_turns_type, directions_beside, directions_at_rest
   use mech9_simulation, only: simulation_type, simulation_statistics_type, standing_type
   implicit none
@@ -228,15 +229,16 @@ contains
   end subroutine pass_ends
 
   !> Go on by a way within which no drive moves far, and the motion of the others is known well by its ends. It ends at the first time at
-  !> which a pair with friction turns back.
+  !> which a pair with friction turns back, or its friction has a kink.
   subroutine stride(self, t, from, to, at_joint, err)
     class(driven_simulation_type), intent(inout) :: self   !< the simulation, started
     real(wp), intent(in) :: t                              !< time to go towards [s]
     real(wp), intent(out) :: from                          !< start of the way [s]
     real(wp), intent(inout) :: to                          !< end of the way before; then of this one [s]
-    logical, intent(out) :: at_joint                       !< frictions jump at its end
+    logical, intent(out) :: at_joint                       !< frictions jump or have a kink at its end
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     real(wp) :: next
+    logical :: at_kink
 
     at_joint = .false.
     from = to
@@ -246,18 +248,67 @@ contains
     if (allocated(err)) return
     if (self%turns%may_come) then
       call self%turns%find_first(self%model%mechanism, self%plan, self%angles%held%drives, self%driven, next)
-      call move_to(self, next, err)
+      call end_at_kink(self, from, next, at_kink, err)
+      if (.not. allocated(err)) call move_to(self, next, err)
       if (allocated(err)) return
       if (abs(self%model%request%time%end - next) > 0.0_wp) then
         call self%turns%note_end(next, directions_behind(self))
       else
         call self%turns%note_end(next)
       end if
-      at_joint = self%turns%is_at_end
+      at_joint = self%turns%is_at_end .or. at_kink
     end if
     to = next
     if (allocated(self%frictions)) call self%look_at(next, err)
   end subroutine stride
+
+  !> End a stride at the first time at which a term of a bearing load turns round, if there is one.
+  subroutine end_at_kink(self, from, next, at_kink, err)
+    class(driven_simulation_type), intent(inout) :: self   !< the simulation; it stands anywhere in the stride afterwards
+    real(wp), intent(in) :: from                           !< start of the stride [s]
+    real(wp), intent(inout) :: next                        !< its end [s]
+    logical, intent(out) :: at_kink                        !< there is one
+    type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    real(wp), dimension(2, bearing_terms, size(self%model%mechanism%frictions)) :: first, terms
+    real(wp) :: before, middle
+
+    at_kink = .false.
+    ! terms are zero where the stride before ended at their turn
+    before = from + beside_part*(next - from)
+    call find_terms(before, first)
+    if (.not. allocated(err)) call find_terms(next, terms)
+    if (allocated(err)) return
+    at_kink = any_turns_round(first, terms)
+    if (.not. at_kink) return
+    do while (abs(next - before) > 2.0_wp*spacing(max(abs(next), abs(before))))
+      middle = 0.5_wp*(next + before)
+      call find_terms(middle, terms)
+      if (allocated(err)) return
+      if (any_turns_round(first, terms)) then
+        next = middle
+      else
+        before = middle
+      end if
+    end do
+  contains
+    !> Find the terms of all bearing loads at a time.
+    subroutine find_terms(t, terms)
+      real(wp), intent(in) :: t                  !< the time [s]
+      real(wp), intent(out) :: terms(:, :, :)    !< (2,terms,frictions) [N]
+
+      call move_to(self, t, err)
+      if (.not. allocated(err)) call find_frictions(self, self%turns%directions_on(2, directions_now(self), .true.), err)
+      if (.not. allocated(err)) call self%frictions%bearing_terms_of(self%model%mechanism%frictions, terms)
+    end subroutine find_terms
+  end subroutine end_at_kink
+
+  !> Directions in which pairs slide, by their present rates.
+  pure function directions_now(self) result(directions)
+    class(driven_simulation_type), intent(in) :: self   !< the simulation
+    real(wp) :: directions(size(self%model%mechanism%frictions))
+
+    directions = slip_directions(self%model%mechanism, self%plan, self%driven%state)
+  end function directions_now
 
   !> The end of the last stride, where pairs with friction may turn back [s].
   pure real(wp) function end_of_stride(self, known)
@@ -290,12 +341,14 @@ contains
     class(driven_simulation_type), intent(inout) :: self   !< the simulation, started
     real(wp), intent(in) :: t                              !< the time [s]
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
+    logical :: at_end
+    integer :: side
 
     call move_to(self, t, err)
     if (.not. allocated(self%frictions) .or. allocated(err)) return
-    associate (slipping => slip_directions(self%model%mechanism, self%plan, self%driven%state))
-      call find_frictions(self, self%turns%directions_in(t, slipping), err)
-    end associate
+    at_end = self%turns%is_at_end .and. .not. abs(t - self%turns%end) > 0.0_wp
+    side = merge(2, 1, at_end .and. self%turns%is_left)
+    call find_frictions(self, self%turns%directions_on(side, directions_now(self), at_end), err)
   end subroutine look_at
 
   !> Find the frictions at the present time.

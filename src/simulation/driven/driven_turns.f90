@@ -28,7 +28,7 @@ module mech9_driven_turns
     procedure :: begin
     procedure :: find_first
     procedure :: note_end
-    procedure :: directions_in
+    procedure :: directions_on
   end type driven_turns_type
 
 contains
@@ -97,19 +97,18 @@ contains
     self%is_left = .false.
   end subroutine note_end
 
-  !> Directions of all pairs at a time within the last stride; at its end, on one side of it.
-  pure function directions_in(self, t, slipping) result(directions)
+  !> Directions of all pairs on one side of the end of the last stride.
+  pure function directions_on(self, side, slipping, at_end) result(directions)
     class(driven_turns_type), intent(in) :: self      !< the turns
-    real(wp), intent(in) :: t                         !< the time [s]
-    real(wp), intent(in) :: slipping(:)               !< (frictions) directions of the rates at this time; 0: at rest, or smooth
+    integer, intent(in) :: side                       !< 1: within the stride; 2: behind it
+    real(wp), intent(in) :: slipping(:)               !< (frictions) directions of the rates; 0: at rest, or smooth
+    logical, intent(in) :: at_end                     !< rates there may have the sign of the other side
     real(wp) :: directions(size(slipping))
-    logical :: changes
 
-    changes = self%is_at_end .and. .not. abs(t - self%end) > 0.0_wp
-    associate (side => self%sides(:, merge(2, 1, changes .and. self%is_left)))
-      directions = merge(side, slipping, abs(side) > 0.0_wp .and. (changes .or. .not. abs(slipping) > 0.0_wp))
+    associate (known => self%sides(:, side))
+      directions = merge(known, slipping, abs(known) > 0.0_wp .and. (at_end .or. .not. abs(slipping) > 0.0_wp))
     end associate
-  end function directions_in
+  end function directions_on
 
   !> Directions of all pairs a little before or behind the present position. Pairs that rest at that time, too, have none.
   subroutine directions_beside(mechanism, plan, drives, driven, time, directions)
