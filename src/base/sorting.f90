@@ -14,6 +14,10 @@ contains
     integer, intent(inout) :: order(:)     !< numbers of things, some or all of them
     integer :: other(size(order)), width, first, middle, last, left, right, i
 
+    do i = 2, size(order)
+      if (keys(order(i - 1)) > keys(order(i))) exit
+    end do
+    if (i > size(order)) return
     width = 1
     do while (width < size(order))
       do first = 1, size(order), 2*width

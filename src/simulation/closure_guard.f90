@@ -7,8 +7,7 @@ module mech9_closure_guard
   use mech9_plan, only: plan_type
   implicit none
   private
-  public :: check_closure
-
+  public :: check_closure, closes_well
 
 contains
 
@@ -34,4 +33,12 @@ contains
     err%failure%link = plan%shortest_link
     err%failure%distance = plan%least_length
   end subroutine check_closure
+
+  !> Whether gaps are so far below those that would be taken for an open chain that no position needs this guard.
+  pure logical function closes_well(plan, gap)
+    type(plan_type), intent(in) :: plan   !< the plan of the mechanism
+    real(wp), intent(in) :: gap           !< gaps that count as closed [rad, lengths of the mechanism]
+
+    closes_well = gap*plan%length < 0.1_wp*hidden_part*plan%least_length
+  end function closes_well
 end module mech9_closure_guard

@@ -6,7 +6,6 @@
 module mech9_lane_runs
   use mech9_kinds, only: wp
   use mech9_tolerances, only: longest_drive
-  use mech9_simulation_tolerances, only: hidden_part
   use mech9_error, only: error_type
   use mech9_processor, only: vector_bits
   use mech9_pose, only: transformed
@@ -18,6 +17,7 @@ module mech9_lane_runs
   use mech9_requested, only: requested_type, requested_by_results, leave_out_unrequested
   use mech9_smooth_pieces, only: have_joints
   use mech9_chebyshev, only: chebyshev_type, new_chebyshev
+  use mech9_closure_guard, only: closes_well
   use mech9_simulation, only: interruption_type
   use mech9_explained_assembly, only: assemble_model
   use mech9_tracked_quantity, only: tracked_quantity_type, outputs_about
@@ -25,7 +25,7 @@ module mech9_lane_runs
   use mech9_quantity_pieces, only: points_between
   use mech9_design_run, only: find_quantities
   use mech9_lane_tolerances, only: closed
-  use mech9_lane_group, only: lane_group_type, lanes, new_lane_group, fits_lanes, fill_lane, renew_lane, copy_lane
+  use mech9_lane_group, only: lane_group_type, lanes, is_plain, new_lane_group, fits_lanes, fill_lane, renew_lane, copy_lane
   use mech9_lane_starts, only: lane_starts_type
   use mech9_lane_motion, only: begin_group, go_on_with_group, find_point, keep_column
   implicit none
@@ -139,12 +139,7 @@ contains
     associate (mechanism => model%mechanism, output => model%request%output)
       if (output%derivatives < 2 .or. output%with_forces() .or. output%with_derivatives() .or. output%conditioning) return
       if (model%program == dynamics .and. output%energies) return
-      if (model%request%solver%accuracy > 0.0_wp .or. mechanism%data_tolerance > 0.0_wp) return
-      if (size(mechanism%motors) > 0 .or. size(mechanism%stops) > 0 .or. mechanism%has_frictions() .or. &
-          mechanism%has_contacts()) return
-      if (allocated(mechanism%couplings)) then
-        if (size(mechanism%couplings) > 0) return
-      end if
+      if (model%request%solver%accuracy > 0.0_wp .or. .not. is_plain(mechanism)) return
     end associate
     if (model%request%time%intervals < 1 .or. .not. abs(model%request%time%end - model%request%time%start) > 0.0_wp) return
     simple = .not. have_joints(model)
@@ -257,7 +252,7 @@ contains
     if (.not. fits) return
     call self%starts%find(model, found)
     if (found) then
-      fits = closes_well(self%starts%plan)
+      fits = closes_well(self%starts%plan, closed)
       if (fits) call renew_lane(self%starts%plan, self%starts%state%q, lane, self%group, fits)
       if (fits) call place_sources(model, self%starts%plan, lane, self%sources)
       if (fits) return
@@ -266,17 +261,10 @@ contains
     fits = .not. allocated(err)
     if (.not. fits) return
     call leave_out_unrequested(plan, self%requested)
-    fits = fits_lanes(plan) .and. closes_well(plan)
+    fits = fits_lanes(plan) .and. closes_well(plan, closed)
     if (fits) call fill_lane(plan, state%q, lane, self%group, fits)
     if (fits) call place_sources(model, plan, lane, self%sources)
   end subroutine assemble_lane
-
-  !> Whether gaps that count as closed are far below those that would be taken for an open chain.
-  pure logical function closes_well(plan)
-    type(plan_type), intent(in) :: plan   !< the plan of the design
-
-    closes_well = closed*plan%length < 0.1_wp*hidden_part*plan%least_length
-  end function closes_well
 
   !> Give a lane the numbers of the points of quantities.
   subroutine place_sources(model, plan, lane, sources)
@@ -343,7 +331,7 @@ contains
       if (i == 0) then
         call begin_group(self%bits, self%group)
       else
-        call go_on_with_group(self%bits, h, self%group)
+        call go_on_with_group(self%bits, spread(h, 1, lanes), self%group)
       end if
       if (any(self%group%refused > 0.0_wp)) call leave_refused(self%group, self%sources, done)
       if (.not. any(done)) return

@@ -1,15 +1,18 @@
 !> Designs side by side: the planar motion of several mechanisms of one structure, whose numbers and coordinates stand beside each other.
+!> Several motions of one mechanism can stand side by side, too.
 !>
 !> A lane is the place of one design. The number of the lane is the first index of all arrays, so that the processor computes several
 !> designs by one instruction. No lane reads another one: a design has the same results in any lane and in any company.
 !> A lane in which the motion can't go on in this way is left; its design is then to be followed alone.
 module mech9_lane_group
   use mech9_kinds, only: wp
+  use mech9_mechanism, only: mechanism_type
   use mech9_plan, only: plan_type, block_type
   use mech9_planar_chain, only: planar_chain_type, new_planar_chain
   implicit none
   private
-  public :: lane_group_type, lane_block_type, new_lane_group, fits_lanes, fill_lane, renew_lane, copy_lane
+  public :: lane_group_type, lane_block_type, lane_step_type, is_plain, new_lane_group, fits_lanes, fill_lane, renew_lane, &
+    copy_lane
 
   !> Designs that stand side by side.
   integer, parameter, public :: lanes = 16
@@ -67,9 +70,24 @@ module mech9_lane_group
     type(lane_frame_type), allocatable :: frames(:)      !< (0:M)
     real(wp) :: per_length(lanes) = 1.0_wp               !< one over the mechanism's size [1/m]
     real(wp) :: refused(lanes) = 0.0_wp                  !< above 0: the motion of the lane could not be followed
+    ! the present step
+    real(wp) :: h(lanes) = 0.0_wp                        !< its length [s]; 0: beside the last position
+    real(wp) :: h_higher(lanes) = 0.0_wp                 !< the same, 0 where higher factors of polynomials do not serve
+    real(wp) :: per_h(lanes) = 1.0_wp                    !< one over the length [1/s]
+    real(wp) :: taken(lanes) = 0.0_wp                    !< length of the step to the last position; 0: there is none [s]
   end type lane_group_type
 
 contains
+
+  !> Whether a mechanism has nothing beside its chains by which its motion could end, and no gaps that count as closed.
+  pure logical function is_plain(mechanism)
+    type(mechanism_type), intent(in) :: mechanism   !< the mechanism
+
+    is_plain = .not. mechanism%data_tolerance > 0.0_wp .and. size(mechanism%motors) == 0 .and. size(mechanism%stops) == 0 .and. &
+               .not. mechanism%has_frictions() .and. .not. mechanism%has_contacts()
+    if (.not. is_plain .or. .not. allocated(mechanism%couplings)) return
+    is_plain = size(mechanism%couplings) == 0
+  end function is_plain
 
   !> Whether the motion of a plan can be followed in a lane: it is planar, and each block is a chain with three unknowns or closes none.
   pure logical function fits_lanes(plan) result(fits)
@@ -182,6 +200,7 @@ contains
     end do
     fits = .true.
     do b = 1, size(group%blocks)
+      group%blocks(b)%largest_pivot(lane) = 0.0_wp
       if (group%blocks(b)%closure == 0) cycle
       associate (closure => plan%planar%closures(group%blocks(b)%closure))
         group%blocks(b)%goal(lane, :) = [closure%cosine, closure%sine, closure%place]
@@ -211,6 +230,10 @@ contains
 
     group%per_length(to) = group%per_length(from)
     group%refused(to) = group%refused(from)
+    group%h(to) = group%h(from)
+    group%h_higher(to) = group%h_higher(from)
+    group%per_h(to) = group%per_h(from)
+    group%taken(to) = group%taken(from)
     do s = 1, size(group%steps)
       call copy_step(group%steps(s))
     end do

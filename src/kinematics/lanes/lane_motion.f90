@@ -2,15 +2,15 @@
 module mech9_lane_motion
   use mech9_kinds, only: wp
   use mech9_lane_group, only: lane_group_type, lanes
-  use mech9_lane_motion_sse2, only: begin_sse2 => begin_in_lanes, go_on_sse2 => go_on_in_lanes, point_sse2 => point_in_lanes, &
-    keep_sse2 => keep_in_lanes
-  use mech9_lane_motion_avx2, only: begin_avx2 => begin_in_lanes, go_on_avx2 => go_on_in_lanes, point_avx2 => point_in_lanes, &
-    keep_avx2 => keep_in_lanes
+  use mech9_lane_motion_sse2, only: begin_sse2 => begin_in_lanes, go_on_sse2 => go_on_in_lanes, &
+    renew_sse2 => renew_rates_in_lanes, point_sse2 => point_in_lanes, keep_sse2 => keep_in_lanes
+  use mech9_lane_motion_avx2, only: begin_avx2 => begin_in_lanes, go_on_avx2 => go_on_in_lanes, &
+    renew_avx2 => renew_rates_in_lanes, point_avx2 => point_in_lanes, keep_avx2 => keep_in_lanes
   use mech9_lane_motion_avx512, only: begin_avx512 => begin_in_lanes, go_on_avx512 => go_on_in_lanes, &
-    point_avx512 => point_in_lanes, keep_avx512 => keep_in_lanes
+    renew_avx512 => renew_rates_in_lanes, point_avx512 => point_in_lanes, keep_avx512 => keep_in_lanes
   implicit none
   private
-  public :: begin_group, go_on_with_group, find_point, keep_column
+  public :: begin_group, go_on_with_group, renew_rates_of_group, find_point, keep_column
 
 contains
 
@@ -32,7 +32,7 @@ contains
   !> Go on by a step on the same branch. `refused` is raised in lanes where the branch stepper would not accept the step at once.
   pure subroutine go_on_with_group(bits, h, group)
     integer, intent(in) :: bits                     !< of the vector registers that are used: 512, 256, or any others
-    real(wp), intent(in) :: h                       !< length of the step [s]
+    real(wp), intent(in) :: h(lanes)                !< lengths of the step [s]; 0: beside the last position
     type(lane_group_type), intent(inout) :: group   !< with the motion of the given coordinates at its end
 
     select case (bits)
@@ -44,6 +44,21 @@ contains
       call go_on_sse2(h, group)
     end select
   end subroutine go_on_with_group
+
+  !> Find rates and accelerations anew at the positions that were found last, for others of the given coordinates.
+  pure subroutine renew_rates_of_group(bits, group)
+    integer, intent(in) :: bits                     !< of the vector registers that are used: 512, 256, or any others
+    type(lane_group_type), intent(inout) :: group   !< with rates and accelerations of the given coordinates
+
+    select case (bits)
+    case (512)
+      call renew_avx512(group)
+    case (256)
+      call renew_avx2(group)
+    case default
+      call renew_sse2(group)
+    end select
+  end subroutine renew_rates_of_group
 
   !> A component of the motion of a point of a link.
   pure subroutine find_point(bits, group, frame, place, axis, origin, motion)

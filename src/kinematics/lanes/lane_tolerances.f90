@@ -3,7 +3,7 @@ module mech9_lane_tolerances
   use mech9_kinds, only: wp
   implicit none
   private
-  public :: clear_start, closed, least_square, least_volume, longest_change, most_iterations, small_sine
+  public :: clear_start, closed, least_square, least_volume, least_way, longest_change, longest_way, most_iterations, small_sine
 
   !> Corrections by Newton's method; the branch stepper, which may make more, follows a lane that needs more.
   integer, parameter :: most_iterations = 6
@@ -17,6 +17,11 @@ module mech9_lane_tolerances
   real(wp), parameter :: least_square = 1.0e-200_wp
   !> Largest change of a coordinate in a correction, in its unit; all steps that are accepted have smaller ones.
   real(wp), parameter :: longest_change = 0.5_wp
+  !> Longest step of an independent coordinate between positions, in its unit: half of the longest that is ever trusted, since lanes
+  !> cannot try shorter ones.
+  real(wp), parameter :: longest_way = 0.125_wp
+  !> A shorter step leaves the polynomial that predicts as it is, since it would only hold round-off; in the unit of the coordinate.
+  real(wp), parameter :: least_way = 1.0e-9_wp
   !> Sines below this have angles by four terms of the series of the arc sine.
   real(wp), parameter :: small_sine = 1.0e-2_wp
 end module mech9_lane_tolerances
