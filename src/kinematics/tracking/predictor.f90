@@ -133,8 +133,6 @@ contains
         higher(i, 1) = (x_without + part*(x - x_without))*per_cube
         higher(i, 2) = (y_without + part*(y - y_without))*per_cube*per_h
         higher(i, 3) = part*z*per_cube*per_h**2
-      end do
-      do i = 1, m
         last_q(i) = q(i)
         last_dq(i) = dq(i)
         last_ddq(i) = ddq(i)
