@@ -40,6 +40,29 @@ PARAMETERS = text_of(FOUR_BAR).replace('intervals=10000', 'intervals=90') + """&
 """
 
 
+def ladder(chains):
+    """Four-bars one after the other, each driven by the rocker before it, of which all but the first have one form. A parameter moves the
+    pins of the rockers that follow, in steps of four chains."""
+    lines = [f"&mechanism links={2 + 2 * chains}, coordinates={1 + 3 * chains} /", '&structure cq=1 /',
+             "&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /"]
+    before = 2
+    for i in range(chains):
+        k, link = 2 + 3 * i, 3 + 2 * i
+        pin, coupler, first = (0.15, 0.35, (1.0, 1.8, -0.8)) if i == 0 else (0.3, 0.41, (-1.8, 1.8, -1.8))
+        lines += [f"&pair coordinate={k}, links={before},{link}, kind='revolute', axis=0,0,1, point={pin},0,0, moving_point=0,0,0 /",
+                  f"&pair coordinate={k + 1}, links=1,{link + 1}, kind='revolute', axis=0,0,1, point={0.4 + 0.403 * i:.4f},0,0, moving_point=0,0,0 /",
+                  f"&pair coordinate={k + 2}, links={link + 1},{link}, kind='revolute', axis=0,0,1, point=0.3,0,0, moving_point={coupler},0,0 /"]
+        lines += [f'&initial coordinate={k + j}, position={first[j]} /' for j in range(3)]
+        if i % 4 == 3:
+            lines.append(f"&parameter name='pin{i}', {'value=0.3' if i == 3 else 'formula=' + chr(39) + 'pin3' + chr(39)}, "
+                         f"sets='pair({k + 2}).point(1)' /")
+        before = link + 1
+    return '\n'.join(lines) + """
+&drive coordinate=1, kind='polynomial', coefficients=0,10 /
+&time start=0, end=0.01, intervals=20 /
+"""
+
+
 def written(folder, text, name='data.nml'):
     """A data file."""
     path = folder / name
@@ -112,6 +135,28 @@ def test_the_code_is_used(checks, build, four_bar, tmp_path):
     alone = written(tmp_path, text[:text.index('! The way from the programs')], 'alone.f90')
     done = run('gfortran', '-std=f2008', '-Wall', '-Wextra', '-Wno-unused-dummy-argument', '-Werror', '-c', alone, folder=tmp_path)
     checks.equal(done.returncode, 0, f'standard Fortran: {done.stderr}')
+
+
+def test_chains_of_equal_form(checks, build, mech9k, tmp_path):
+    """A hundred links: chains of equal form share their code, which is not long. They are small in lengths of the mechanism, and far from its
+    base; a small fault in the code shows in each of them."""
+    data = written(tmp_path, ladder(49))
+    program = made(build, tmp_path, data)
+    text = text_of(tmp_path / 'rig.f90')
+    checks.true(len(text) <= 200000, 'at most 200 kB for 100 links', f'{len(text)}')
+    checks.equal(len(re.findall('end subroutine form_', text)), 2, 'chains with and without a parameter share procedures')
+    for setting in ((), ('--set', 'parameter(1).value=0.31')):
+        # least pivots of 1e-2 lengths of the mechanism, and 49 chains one after the other
+        compare(checks, table_of(program, data, *setting), table_of(mech9k, data, *setting), f'ladder {setting}', 1e-8)
+    right = re.findall(r'^ *ddq\(k\(\d+\)\) = -.*$', text, re.M)
+    faulty = text
+    for line in right:
+        faulty = faulty.replace(line, line.replace('= -', '= -1.001_wp*'))
+    done = run(build.program('mech9-link'), '-o', tmp_path / 'faulty', written(tmp_path, faulty, 'faulty.f90'), folder=tmp_path, timeout=600)
+    checks.equal(done.returncode, 0, f'a program of the changed code: {done.stderr}')
+    right, wrong = (table_of(path, data) for path in (program, tmp_path / 'faulty_k'))
+    for k in range(5, 149, 3):
+        checks.true(np.max(np.abs(wrong[f'ddq{k}'] - right[f'ddq{k}'])) > 1e-4 * np.max(np.abs(right[f'ddq{k}'])), f'chain of {k}: the fault shows')
 
 
 REFUSED = (('pair(3).point=0.41,0,0', '&pair 3 differs: there "point = 0.4, 0, 0", here "point = 0.41, 0, 0"'),

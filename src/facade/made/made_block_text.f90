@@ -1,47 +1,41 @@
-!> One block of a plan in planar arithmetic as straight-line Fortran: the procedure that closes its chain and finds its motion.
+!> One block of a plan in planar arithmetic as straight-line Fortran: the statements that close its chain and find its motion.
 !>
 !> The formulas are those of mech9_planar_formulas, mech9_planar_motion and mech9_planar_chain, written out for each step. Variables of a
 !> frame i are ci, si, xi, yi (pose), wi, vxi, vyi (velocity), ei, axi, ayi (acceleration) and hxi, hyi (from its parent's origin).
 module mech9_made_block_text
-  use mech9_kinds, only: wp
   use mech9_text, only: to_text
   use mech9_plan, only: plan_type, block_type
   use mech9_planar_chain, only: new_planar_chain
-  use mech9_made_motion, only: numbers_of_plan, per_step, per_closure
-  use mech9_made_motion_text, only: writer_type, frame_text_type, axes, write_rows, write_velocities, write_accelerations
+  use mech9_made_motion, only: per_step, per_closure
+  use mech9_made_motion_text, only: writer_type, frame_text_type, index_length, axes, write_rows, write_velocities, &
+    write_accelerations
   use mech9_made_terms, only: lines_type, sum_of, product_of, negative, literal, full, term_length
+  use mech9_made_names, only: name_places, name_numbers, others_of
   implicit none
   private
-  public :: write_made_block
+  public :: write_statements
 
   integer, parameter :: l = term_length
 
 contains
 
-  !> Write the procedure move_NUMBER of a block.
-  subroutine write_made_block(plan, block, number, is_fixed, lines)
+  !> The statements of a block, from its coordinates to the motion of its frames.
+  subroutine write_statements(plan, block, is_fixed, is_shared, writer)
     type(plan_type), intent(in) :: plan            !< the plan
     type(block_type), intent(in) :: block          !< its block
-    integer, intent(in) :: number                  !< of the block among those that are made
     logical, intent(in) :: is_fixed(:)             !< (numbers of the plan) it is a constant
-    type(lines_type), intent(inout) :: lines       !< get the procedure
-    type(writer_type) :: writer
-    real(wp), allocatable :: numbers(:)
-    integer :: i
+    logical, intent(in) :: is_shared               !< blocks of equal form share the statements: places and constants are arguments
+    type(writer_type), intent(out) :: writer       !< gets the statements
+    character(len=l) :: length
 
-    call numbers_of_plan(plan, numbers)
-    allocate (writer%frame(0:plan%n_coordinates), writer%number(size(numbers)))
-    do i = 1, size(numbers)
-      writer%number(i) = 'n('//to_text(i)//')'
-      if (is_fixed(i)) writer%number(i) = literal(numbers(i))
-    end do
     if (block%last_closure >= block%first_closure) writer%chain = new_planar_chain(plan, block)
+    call name_places(plan, block, is_shared, writer)
+    call name_numbers(plan, block, is_fixed, is_shared, writer)
     call read_others(plan, block, writer)
     call write_turns(plan, block, writer)
     if (writer%chain%used) then
-      i = size(numbers)
-      if (is_fixed(i)) writer%per_length = literal(1.0_wp/numbers(i))
-      if (.not. is_fixed(i)) call writer%lines%keep('per_length', '1.0_wp/n('//to_text(i)//')', writer%per_length)
+      length = writer%number(size(writer%number))
+      if (writer%per_length == '') call writer%lines%keep('per_length', '1.0_wp/'//length, writer%per_length)
       call write_closing(plan, block, writer)
     else
       call write_poses(plan, block, writer)
@@ -51,85 +45,7 @@ contains
     call writer%lines%put('    is_solved = .true.')
     call writer%lines%put('    if (.not. full) return')
     call write_accelerations(plan, block, writer)
-    call write_head(plan, block, number, writer%lines, lines)
-    lines%text = lines%text//writer%lines%text
-    call lines%put('  end subroutine move_'//to_text(number))
-  end subroutine write_made_block
-
-  !> The head of the procedure, with the declarations of all variables.
-  subroutine write_head(plan, block, number, body, lines)
-    type(plan_type), intent(in) :: plan            !< the plan
-    type(block_type), intent(in) :: block          !< its block
-    integer, intent(in) :: number                  !< of the block among those that are made
-    type(lines_type), intent(in) :: body           !< the statements
-    type(lines_type), intent(inout) :: lines       !< get the head
-    character(len=132) :: line
-    integer :: i, turning
-
-    turning = count(plan%planar%steps(block%first_step:block%last_step)%turns)
-    call lines%put('')
-    line = '  !> The steps of coordinates '//to_text(plan%planar%steps(block%first_step:block%last_step)%coordinate)//'.'
-    call lines%put(line)
-    if (size(block%unknowns) > 0) then
-      line = '  !> The dependent ones are '//to_text(block%coordinates)//'.'
-      call lines%put(line)
-    end if
-    call lines%put('  pure subroutine move_'//to_text(number)//'(n, full, q, dq, ddq, f, slide, turn, v, a, jacobian, inverse, &')
-    call lines%put('                         iterations, correction, contraction, pivots, sign_of_det, is_solved)')
-    call write_arguments(number == 1, lines)
-    if (turning > 0) call lines%put('    real(wp) :: angles('//to_text(turning)//'), cs(2, '//to_text(turning)//')')
-    line = '    real(wp) ::'
-    do i = 1, size(body%names)
-      if (len_trim(line) + len_trim(body%names(i)) > 110) then
-        call lines%put(line)
-        line = '    real(wp) ::'
-      end if
-      if (line /= '    real(wp) ::') line = trim(line)//','
-      line = trim(line)//' '//trim(body%names(i))
-    end do
-    call lines%put(line)
-    if (size(block%unknowns) > 0) call lines%put('    logical :: is_last')
-    call lines%put('')
-    call lines%put('    is_solved = .false.')
-    call lines%put('    iterations = 0')
-    call lines%put('    correction = 0.0_wp')
-    call lines%put('    contraction = 0.0_wp')
-  end subroutine write_head
-
-  !> The arguments of the procedure, with their meanings in the first one only.
-  subroutine write_arguments(with_meanings, lines)
-    logical, intent(in) :: with_meanings           !< the meanings are told
-    type(lines_type), intent(inout) :: lines       !< get the declarations
-
-    if (with_meanings) then
-      call lines%put('    real(wp), intent(in) :: n(*)               ! numbers of the mechanism that are not constants here')
-      call lines%put('    logical, intent(in) :: full                ! accelerations are found, too')
-      call lines%put('    real(wp), intent(inout) :: q(*)            ! coordinates: given ones, guesses of the others [rad, m]')
-      call lines%put('    real(wp), intent(inout) :: dq(*), ddq(*)   ! their rates and accelerations; the given ones are known')
-      call lines%put('    real(wp), intent(inout) :: f(4, 0:*)       ! cosine, sine, x, y of frames [m]')
-      call lines%put('    real(wp), intent(inout) :: slide(2, *)     ! directions of slides')
-      call lines%put('    real(wp), intent(inout) :: turn(2, *)      ! cosine and sine of turns')
-      call lines%put('    real(wp), intent(inout) :: v(3, 0:*)       ! velocities of frames [rad/s, m/s]')
-      call lines%put('    real(wp), intent(inout) :: a(3, 0:*)       ! accelerations of frames [rad/s^2, m/s^2]')
-      call lines%put('    real(wp), intent(inout) :: jacobian(3, 3)  ! of the three equations of the chain')
-      call lines%put('    real(wp), intent(inout) :: inverse(3, 3)   ! of the Jacobian')
-      call lines%put('    integer, intent(out) :: iterations         ! corrections of the guess')
-      call lines%put('    real(wp), intent(out) :: correction        ! sum of the largest change of a coordinate in each')
-      call lines%put('    real(wp), intent(out) :: contraction       ! second change over the first; 0: one was enough')
-      call lines%put('    real(wp), intent(inout) :: pivots(3)       ! of the Jacobian, not increasing')
-      call lines%put('    integer, intent(inout) :: sign_of_det      ! of the Jacobian')
-      call lines%put('    logical, intent(out) :: is_solved')
-    else
-      call lines%put('    real(wp), intent(in) :: n(*)                                ! all as in move_1')
-      call lines%put('    logical, intent(in) :: full')
-      call lines%put('    real(wp), intent(inout) :: q(*), dq(*), ddq(*), f(4, 0:*), slide(2, *), turn(2, *), v(3, 0:*), a(3, 0:*)')
-      call lines%put('    real(wp), intent(inout) :: jacobian(3, 3), inverse(3, 3), pivots(3)')
-      call lines%put('    real(wp), intent(out) :: correction, contraction')
-      call lines%put('    integer, intent(out) :: iterations')
-      call lines%put('    integer, intent(inout) :: sign_of_det')
-      call lines%put('    logical, intent(out) :: is_solved')
-    end if
-  end subroutine write_arguments
+  end subroutine write_statements
 
   !> Read the motion of frames of other blocks at which steps of the block, or branches of its loop, begin.
   subroutine read_others(plan, block, writer)
@@ -138,27 +54,23 @@ contains
     type(writer_type), intent(inout) :: writer     !< of the block
     logical :: is_read(0:plan%n_coordinates)
     integer :: i, p
-    character(len=12) :: k
+    character(len=index_length) :: k
+    character(len=index_length + 3) :: at
 
-    is_read = .false.
-    do i = block%first_step, block%last_step
-      is_read(plan%planar%steps(i)%parent) = .true.
-    end do
-    if (writer%chain%used) is_read([writer%chain%stems, writer%chain%closure%base, writer%chain%closure%target]) = .true.
-    is_read(0) = .false.
-    is_read(block%first_step:block%last_step) = .false.
+    is_read = others_of(plan, block, writer)
     do i = 1, plan%n_coordinates
       if (.not. is_read(i)) cycle
-      k = to_text(i)
+      k = writer%name(i)
+      at = ', '//trim(writer%place(i))//')'
       associate (frame => writer%frame(i))
-        call writer%lines%keep('c'//trim(k), 'f(1, '//trim(k)//')', frame%c)
-        call writer%lines%keep('s'//trim(k), 'f(2, '//trim(k)//')', frame%s)
-        call writer%lines%keep('w'//trim(k), 'v(1, '//trim(k)//')', frame%w)
-        frame%e = 'a(1, '//trim(k)//')'
+        call writer%lines%keep('c'//trim(k), 'f(1'//at, frame%c)
+        call writer%lines%keep('s'//trim(k), 'f(2'//at, frame%s)
+        call writer%lines%keep('w'//trim(k), 'v(1'//at, frame%w)
+        frame%e = 'a(1'//at
         do p = 1, 2
-          call writer%lines%keep(axes(p)//trim(k), 'f('//to_text(p + 2)//', '//trim(k)//')', frame%p(p))
-          call writer%lines%keep('v'//axes(p)//trim(k), 'v('//to_text(p + 1)//', '//trim(k)//')', frame%v(p))
-          frame%a(p) = 'a('//to_text(p + 1)//', '//trim(k)//')'
+          call writer%lines%keep(axes(p)//trim(k), 'f('//to_text(p + 2)//at, frame%p(p))
+          call writer%lines%keep('v'//axes(p)//trim(k), 'v('//to_text(p + 1)//at, frame%v(p))
+          frame%a(p) = 'a('//to_text(p + 1)//at
         end do
       end associate
     end do
@@ -177,7 +89,7 @@ contains
       associate (step => plan%planar%steps(i))
         if (.not. step%turns) cycle
         k = k + 1
-        angle = product_of(literal(step%turn), 'q('//to_text(step%coordinate)//')')
+        angle = product_of(literal(step%turn), 'q('//trim(writer%coordinate(i))//')')
         angle = sum_of(angle, writer%number(per_step*(i - 1) + 1))
         call writer%lines%set('angles('//to_text(k)//')', angle)
         writer%frame(i)%turn(1) = 'cs(1, '//to_text(k)//')'
@@ -194,10 +106,10 @@ contains
     type(writer_type), intent(inout) :: writer     !< of the block
     character(len=l) :: place(2)
     integer :: i, j
-    character(len=12) :: k
+    character(len=index_length) :: k
 
     do i = block%first_step, block%last_step
-      k = to_text(i)
+      k = writer%name(i)
       associate (step => plan%planar%steps(i), frame => writer%frame(i), parent => writer%frame(plan%planar%steps(i)%parent), &
                  lines => writer%lines)
         place = writer%number(per_step*(i - 1) + 2:per_step*(i - 1) + 3)
@@ -211,7 +123,7 @@ contains
           frame%s = parent%s
           do j = 1, 2
             call lines%keep('p'//axes(j)//trim(k), sum_of(place(j), &
-                            product_of('q('//to_text(step%coordinate)//')', writer%number(per_step*(i - 1) + 3 + j))), place(j))
+                            product_of('q('//trim(writer%coordinate(i))//')', writer%number(per_step*(i - 1) + 3 + j))), place(j))
           end do
           call turned_vector(parent, writer%number(per_step*(i - 1) + 4:per_step*(i - 1) + 5), 's', trim(k), lines, frame%slide)
         end if
@@ -319,8 +231,8 @@ contains
             if (step%turns) then
               matrix(1, j) = literal(chain%signs(s)*step%turn)
               factor = product_of(matrix(1, j), writer%per_length)
-              call lines%keep('bx'//to_text(s), sum_of(base%p(1), negative(frame%p(1))), arm(1))
-              call lines%keep('by'//to_text(s), sum_of(frame%p(2), negative(base%p(2))), arm(2))
+              call lines%keep('bx'//trim(writer%name(s)), sum_of(base%p(1), negative(frame%p(1))), arm(1))
+              call lines%keep('by'//trim(writer%name(s)), sum_of(frame%p(2), negative(base%p(2))), arm(2))
               call lines%keep('j2'//to_text(j), product_of(factor, arm(2)), matrix(2, j))
               call lines%keep('j3'//to_text(j), product_of(factor, arm(1)), matrix(3, j))
             else
@@ -362,7 +274,7 @@ contains
     type(block_type), intent(in) :: block            !< its block
     type(writer_type), intent(inout) :: writer       !< of the block
     character(len=l), intent(in) :: cofactor(3, 3)   !< operands of the cofactors of the Jacobian
-    character(len=l) :: unit
+    character(len=l) :: unit, coordinate
     integer :: j, k, s
 
     associate (lines => writer%lines)
@@ -373,14 +285,15 @@ contains
         call lines%set('change'//to_text(j), sum_of(product_of(cofactor(j, 1), 'residual1'), &
                        product_of(cofactor(j, 2), 'residual2'), product_of(cofactor(j, 3), 'residual3')))
         call lines%set('change'//to_text(j), '-per_volume*change'//to_text(j))
-        call lines%set('q('//to_text(block%coordinates(j))//')', sum_of('q('//to_text(block%coordinates(j))// &
-                       ')', product_of(unit, 'change'//to_text(j))))
+        coordinate = 'q('//trim(writer%coordinate(s))//')'
+        call lines%set(trim(coordinate), sum_of(coordinate, product_of(unit, 'change'//to_text(j))))
       end do
       call lines%set('largest', 'max(abs(change1), abs(change2), abs(change3))')
       call lines%put('      iterations = iterations + 1')
       call lines%put('      correction = correction + largest')
       call lines%put('      if (iterations == 2) contraction = largest/max(previous, tiny(previous))')
       call lines%set('previous', 'largest')
+      call lines%put('      if (largest <= unchanged_position) exit')
       call lines%put('      is_last = largest <= last_correction')
       call lines%put('      if (largest <= small_turn) then')
       k = 0
@@ -414,8 +327,8 @@ contains
       call lines%put('    inverse('//to_text(j)//', :) = ['//trim(full(cofactor(j, 1)))//', '//trim(full(cofactor(j, 2)))//', '// &
                      trim(full(cofactor(j, 3)))//']')
     end do
-    call lines%put('    call find_pivots(jacobian, inverse, volume, pivots, sign_of_det)')
-    call lines%put('    if (.not. pivots(3) > nearly_dependent*pivots(1)) return')
+    call lines%put('    call find_pivots(jacobian, inverse, volume, pivots, sign_of_det, is_exact)')
+    call lines%put('    if (.not. is_exact) return')
     call lines%put('    inverse = per_volume*inverse')
   end subroutine write_factors
 
@@ -425,10 +338,10 @@ contains
     type(block_type), intent(in) :: block          !< its block
     type(writer_type), intent(inout) :: writer     !< of the block
     integer :: i
-    character(len=12) :: k
+    character(len=index_length) :: k
 
     do i = block%first_step, block%last_step
-      k = to_text(i)
+      k = writer%place(i)
       associate (frame => writer%frame(i), lines => writer%lines)
         call lines%put('    f(:, '//trim(k)//') = ['//trim(full(frame%c))//', '//trim(full(frame%s))//', '// &
                        trim(full(frame%p(1)))//', '//trim(full(frame%p(2)))//']')

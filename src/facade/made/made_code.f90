@@ -8,7 +8,7 @@ module mech9_made_code
   use mech9_printable, only: with_escapes
   use mech9_text_file, only: save_text
   use mech9_tolerances, only: closed_to_round_off, last_correction
-  use mech9_motion_tolerances, only: small_turn
+  use mech9_motion_tolerances, only: small_turn, unchanged_position
   use mech9_least_squares, only: nearly_dependent
   use mech9_counted, only: counted
   use mech9_model, only: model_type
@@ -18,8 +18,8 @@ module mech9_made_code
   use mech9_driven_simulation, only: assemble_driven
   use mech9_varied_document, only: varied_document_type
   use mech9_checked_mechanism, only: checked_mechanism_type
-  use mech9_made_terms, only: lines_type, literal
-  use mech9_made_block_text, only: write_made_block
+  use mech9_made_terms, only: lines_type, literal, full
+  use mech9_made_procedures, only: write_procedures
   implicit none
   private
   public :: write_made_code
@@ -59,9 +59,9 @@ contains
     if (size(made) > 0) call find_fixed_numbers(mechanism, model, plan, is_fixed)
     steps = 0
     call lines%put(first_line//with_escapes(data_file, '', ['']))
-    call write_module_head(made, lines)
+    call write_module_head(size(made), lines)
+    call write_procedures(plan, made, is_fixed, lines)
     do i = 1, size(made)
-      call write_made_block(plan, plan%blocks(made(i)), i, is_fixed, lines)
       steps = steps + plan%blocks(made(i))%last_step - plan%blocks(made(i))%first_step + 1
     end do
     call write_turn_procedures(lines)
@@ -106,24 +106,22 @@ contains
   end subroutine find_fixed_numbers
 
   !> The head of the module with the code.
-  subroutine write_module_head(made, lines)
-    integer, intent(in) :: made(:)              !< blocks of the plan for which there is code
+  subroutine write_module_head(count, lines)
+    integer, intent(in) :: count                !< number of blocks for which there is code
     type(lines_type), intent(inout) :: lines    !< get the head
-    integer :: i
 
-    call lines%put('! move_1, move_2, ... close the chains one after the other, from a guess of the dependent coordinates by')
-    call lines%put('! Newton''s method, and find rates, accelerations and the motion of all frames. They need nothing but Fortran.')
+    call lines%put('! move closes the chains one after the other, from a guess of the dependent coordinates by')
+    call lines%put('! Newton''s method, and finds rates, accelerations and the motion of all frames. It needs nothing but Fortran.')
     call lines%put('module mech9_motion_of_one')
     call lines%put('  use, intrinsic :: iso_fortran_env, only: wp => real64')
     call lines%put('  implicit none')
     call lines%put('  private')
-    do i = 1, size(made)
-      call lines%put('  public :: move_'//to_text(i))
-    end do
+    if (count > 0) call lines%put('  public :: move')
     call lines%put('')
-    call lines%put('  ! a closed chain; the last correction; turns that two terms of a series add; singular matrices')
+    call lines%put('  ! a closed chain; the last correction; round-off; turns that two terms add; singular matrices')
     call lines%put('  real(wp), parameter :: closed = '//trim(literal(closed_to_round_off)))
     call lines%put('  real(wp), parameter :: last_correction = '//trim(literal(last_correction)))
+    call lines%put('  real(wp), parameter :: unchanged_position = '//trim(literal(unchanged_position)))
     call lines%put('  real(wp), parameter :: small_turn = '//trim(literal(small_turn)))
     call lines%put('  real(wp), parameter :: nearly_dependent = '//trim(literal(nearly_dependent)))
     call lines%put('  integer, parameter :: most_iterations = 8')
@@ -184,15 +182,19 @@ contains
       '  end subroutine add_turn', &
       '', &
       '  ! The pivots of a Jacobian: its longest column, the largest area that another one spans with it over that length,', &
-      '  ! and the volume of all three over that area.', &
-      '  pure subroutine find_pivots(jacobian, cofactor, volume, pivots, sign_of_det)', &
+      '  ! and the volume of all three over that area. The inverse is as exact as the columns are far apart about a pair of the', &
+      '  ! chain, in lengths of the chain. These may be small in those of the mechanism, and the base may be far away.', &
+      '  pure subroutine find_pivots(jacobian, cofactor, volume, pivots, sign_of_det, is_exact)', &
       '    real(wp), intent(in) :: jacobian(3, 3)   ! the matrix', &
       '    real(wp), intent(in) :: cofactor(3, 3)   ! the vector products of its columns, as rows', &
       '    real(wp), intent(in) :: volume           ! its determinant', &
       '    real(wp), intent(inout) :: pivots(3)     ! not increasing; zero where they cannot be found', &
       '    integer, intent(inout) :: sign_of_det    ! -1 or 1', &
-      '    real(wp) :: lengths(3), areas(3), area', &
+      '    logical, intent(out) :: is_exact         ! the inverse by cofactors', &
+      '    real(wp) :: lengths(3), areas(3), own(2, 3), place(2), area, scale', &
+      '    integer :: turning', &
       '', &
+      '    is_exact = .false.', &
       '    lengths = jacobian(1, :)**2 + jacobian(2, :)**2 + jacobian(3, :)**2', &
       '    areas = cofactor(:, 1)**2 + cofactor(:, 2)**2 + cofactor(:, 3)**2', &
       '    pivots(1) = max(lengths(1), lengths(2), lengths(3))', &
@@ -208,6 +210,18 @@ contains
       '    area = sqrt(area)', &
       '    pivots = [pivots(1), area/pivots(1), abs(volume)/area]', &
       '    sign_of_det = merge(-1, 1, volume < 0.0_wp)', &
+      '    is_exact = pivots(3) > nearly_dependent*pivots(1)', &
+      '    if (is_exact) return', &
+      '    turning = maxloc(abs(jacobian(1, :)), dim=1)', &
+      '    place = jacobian(2:3, turning)*jacobian(1, turning)', &
+      '    own(1, :) = jacobian(2, :) - place(1)*jacobian(1, :)', &
+      '    own(2, :) = jacobian(3, :) - place(2)*jacobian(1, :)', &
+      '    scale = maxval(own**2)', &
+      '    if (.not. scale > 0.0_wp) return', &
+      '    lengths = jacobian(1, :)**2 + (own(1, :)**2 + own(2, :)**2)/scale', &
+      '    areas = (cofactor(:, 1) + place(1)*cofactor(:, 2) + place(2)*cofactor(:, 3))**2/scale', &
+      '    areas = (areas + cofactor(:, 2)**2 + cofactor(:, 3)**2)/scale', &
+      '    is_exact = abs(volume)/scale > nearly_dependent*sqrt(maxval(lengths)*maxval(areas))', &
       '  end subroutine find_pivots']
     integer :: i
 
@@ -240,9 +254,7 @@ contains
     call lines%put('')
     call lines%put('! The way from the programs to the code above.')
     call lines%put('submodule (mech9_made_blocks) mech9_made_blocks_of_one')
-    do i = 1, size(made)
-      call lines%put('  use mech9_motion_of_one, only: move_'//to_text(i))
-    end do
+    if (size(made) > 0) call lines%put('  use mech9_motion_of_one, only: move')
     call lines%put('  implicit none')
     call lines%put('contains')
     call lines%put('')
@@ -255,10 +267,7 @@ contains
                    to_text(size(places))//'))')
     call write_integers('structure', structure, lines)
     call write_integers('places', places, lines)
-    call lines%put('    values = 0.0_wp')
-    do i = 1, size(places)
-      if (abs(numbers(places(i))) > 0.0_wp) call lines%set('values('//to_text(i)//')', literal(numbers(places(i))))
-    end do
+    call write_values(numbers(places), lines)
     call lines%put('  end subroutine describe_made_plan')
     call write_dispatch(size(made), lines)
     call write_description(groups, data_file, lines)
@@ -305,7 +314,27 @@ contains
     end do
   end subroutine write_integers
 
-  !> The procedure of the submodule that calls the code of a block.
+  !> Assignments of numbers to the array of constants, some in a line.
+  subroutine write_values(values, lines)
+    real(wp), intent(in) :: values(:)           !< the constants, SI units
+    type(lines_type), intent(inout) :: lines    !< get the assignments
+    integer, parameter :: longest = 80
+    character(len=132) :: line
+    integer :: from, i
+
+    line = ''
+    from = 1
+    do i = 1, size(values)
+      if (i > from) line = trim(line)//','
+      line = trim(line)//' '//trim(full(literal(values(i))))
+      if (len_trim(line) < longest .and. i < size(values)) cycle
+      call lines%put('    values('//to_text(from)//':'//to_text(i)//') = ['//trim(adjustl(line))//']')
+      line = ''
+      from = i + 1
+    end do
+  end subroutine write_values
+
+  !> The procedure of the submodule that calls the code.
   subroutine write_dispatch(count, lines)
     integer, intent(in) :: count                !< number of blocks with code
     type(lines_type), intent(inout) :: lines    !< get the procedure
@@ -329,50 +358,67 @@ contains
       '    type(made_course_type), intent(out) :: course     ! of Newton''s method', &
       '    logical, intent(out) :: is_solved', &
       '', &
-      '    is_solved = .false.', &
-      '    select case (block)']
+      '    is_solved = .false.']
     integer :: i
 
     do i = 1, size(head)
       call lines%put(head(i))
     end do
-    do i = 1, count
-      call lines%put('    case ('//to_text(i)//')')
-      call lines%put('      call move_'//to_text(i)//'(n, full, q, dq, ddq, f, slide, turn, v, a, jacobian, inverse, &')
-      call lines%put('                  course%iterations, course%correction, course%contraction, course%pivots, &')
-      call lines%put('                  course%sign_of_det, is_solved)')
-    end do
-    call lines%put('    end select')
+    if (count > 0) then
+      call lines%put('    call move(block, n, full, q, dq, ddq, f, slide, turn, v, a, jacobian, inverse, course%iterations, &')
+      call lines%put('              course%correction, course%contraction, course%pivots, course%sign_of_det, is_solved)')
+    end if
     call lines%put('  end subroutine move_made_block')
   end subroutine write_dispatch
 
-  !> The procedure of the submodule that tells the mechanism.
+  !> The procedure of the submodule that tells the mechanism. Its text stands there with a letter in place of ends of lines.
   subroutine write_description(groups, data_file, lines)
     character(len=*), intent(in) :: groups      !< groups of the data file that must not change
     character(len=*), intent(in) :: data_file   !< name of the data file
     type(lines_type), intent(inout) :: lines    !< get the procedure
-    integer, parameter :: longest = 90
-    integer :: from, next
+    integer, parameter :: longest = 100
+    character(len=len(groups)) :: text
+    character :: mark
+    integer :: from, i, to
 
+    mark = unused_letter(groups)
+    text = groups
+    do i = 1, len(text)
+      if (text(i:i) == eol) text(i:i) = mark
+    end do
     call lines%put('')
     call lines%put('  pure module subroutine describe_made_mechanism(groups, name)')
     call lines%put('    character(len=:), allocatable, intent(out) :: groups   ! of the data file that must not change')
     call lines%put('    character(len=:), allocatable, intent(out) :: name     ! of the data file')
+    call lines%put('    integer :: i')
     call lines%put('')
     call lines%put('    name = '//in_apostrophes(data_file))
     call lines%put('    groups = ''''')
     from = 1
-    do while (from <= len(groups))
-      next = index(groups(from:), eol)
-      if (next == 0) next = len(groups) - from + 2
-      if (next - 1 > longest) then
-        call lines%put('    groups = groups//'//in_apostrophes(groups(from:from + longest - 1)))
-        from = from + longest
-      else
-        call lines%put('    groups = groups//'//in_apostrophes(groups(from:from + next - 2))//'//achar(10)')
-        from = from + next
-      end if
+    do while (from <= len(text))
+      ! no blank at the end of a line, where it would not be seen
+      to = min(from + longest - 1, len(text))
+      if (to < len(text) .and. text(to:to) == ' ') to = to - 1
+      call lines%put('    groups = groups//'//in_apostrophes(text(from:to)))
+      from = to + 1
     end do
+    call lines%put('    do i = 1, len(groups)')
+    call lines%put('      if (groups(i:i) == '//in_apostrophes(mark)//') groups(i:i) = achar(10)')
+    call lines%put('    end do')
     call lines%put('  end subroutine describe_made_mechanism')
   end subroutine write_description
+
+  !> A letter that does not occur in a text.
+  pure character function unused_letter(text) result(letter)
+    character(len=*), intent(in) :: text   !< any text
+    character(len=*), parameter :: letters = '|~^`@?#$%;!{}[]<>_+*'
+    integer :: i
+
+    do i = 1, len(letters)
+      letter = letters(i:i)
+      if (index(text, letter) == 0) return
+    end do
+    ! data files hold no control characters
+    letter = achar(1)
+  end function unused_letter
 end module mech9_made_code

@@ -7,9 +7,11 @@ module mech9_made_motion_text
   use mech9_made_terms, only: lines_type, sum_of, product_of, negative, literal, full, term_length
   implicit none
   private
-  public :: writer_type, frame_text_type, axes, write_rows, write_velocities, write_accelerations
+  public :: writer_type, frame_text_type, index_length, axes, write_rows, write_velocities, write_accelerations
 
   integer, parameter :: l = term_length
+  !> Letters of an index.
+  integer, parameter :: index_length = 12
   character(len=*), parameter :: axes(2) = ['x', 'y']
 
   !> The operands of a frame and of the step that makes it.
@@ -34,6 +36,12 @@ module mech9_made_motion_text
     character(len=l), allocatable :: number(:)         !< numbers of the plan, as operands
     character(len=l) :: per_length = '1'               !< one over the mechanism's size
     character(len=l) :: base(2) = '0'                  !< from the closing frame's origin to that of the base
+    character(len=l) :: opening(3) = '0'               !< relative motion of the ends of the loop without the unknown rates
+    character(len=index_length), allocatable :: name(:)         !< (0:M) end of the names of a frame's variables
+    character(len=index_length), allocatable :: place(:)        !< (0:M) index of a frame
+    character(len=index_length), allocatable :: coordinate(:)   !< (M) index of the coordinate of a step
+    integer, allocatable :: k(:)                       !< places, where the code is shared: frames, coordinates, numbers of the plan
+    real(wp), allocatable :: z(:)                      !< constants, where the code is shared [rad, m]
   end type writer_type
 
 contains
@@ -61,15 +69,15 @@ contains
     type(writer_type), intent(inout) :: writer     !< of the block
     character(len=l) :: sums(2), rate
     integer :: i, j
-    character(len=12) :: k
+    character(len=index_length) :: k
 
     if (writer%chain%used) then
       call write_opening(plan, writer, .false.)
       call write_rates(plan, block, writer, 'dq')
     end if
     do i = block%first_step, block%last_step
-      rate = 'dq('//to_text(plan%planar%steps(i)%coordinate)//')'
-      k = to_text(i)
+      rate = 'dq('//trim(writer%coordinate(i))//')'
+      k = writer%name(i)
       associate (step => plan%planar%steps(i), frame => writer%frame(i), parent => writer%frame(plan%planar%steps(i)%parent), &
                  lines => writer%lines)
         call lines%keep('w'//trim(k), sum_of(parent%w, product_of(literal(step%turn), rate)), frame%w)
@@ -79,7 +87,7 @@ contains
         do j = 1, 2
           call lines%keep('v'//axes(j)//trim(k), sums(j), frame%v(j))
         end do
-        call lines%put('    v(:, '//trim(k)//') = ['//trim(full(frame%w))//', '//trim(full(frame%v(1)))//', '// &
+        call lines%put('    v(:, '//trim(writer%place(i))//') = ['//trim(full(frame%w))//', '//trim(full(frame%v(1)))//', '// &
                        trim(full(frame%v(2)))//']')
       end associate
     end do
@@ -90,57 +98,82 @@ contains
     type(plan_type), intent(in) :: plan            !< the plan
     type(writer_type), intent(inout) :: writer     !< of the block
     logical, intent(in) :: of_accelerations        !< else of velocities
-    character(len=l) :: turning(2), moving(2, 2), rate, w, arm(2)
+    character(len=l) :: turning, moving(2), rate, arm(2)
     character(len=3) :: name
-    integer :: b, i, j, s
+    integer :: b, i, s
 
-    associate (chain => writer%chain, lines => writer%lines, closing => writer%frame(writer%chain%closure%closing))
-      do j = 1, 3
-        call lines%set('opening'//to_text(j), '0')
-      end do
+    writer%opening = '0'
+    associate (chain => writer%chain)
       if (chain%stems(1) /= chain%stems(2)) then
         do b = 1, 2
           associate (stem => writer%frame(chain%stems(b)))
-            turning(b) = stem%w
-            moving(:, b) = stem%v
-            if (of_accelerations) turning(b) = stem%e
-            if (of_accelerations) moving(:, b) = stem%a
-            do j = 1, 2
-              call lines%keep('arm'//axes(j), sum_of(closing%p(j), negative(stem%p(j))), arm(j))
-            end do
-            call lines%set('part1', turning(b))
-            call lines%set('part2', sum_of(moving(1, b), negative(product_of(turning(b), arm(2)))))
-            call lines%set('part3', sum_of(moving(2, b), product_of(turning(b), arm(1))))
-            do j = 1, 3
-              call lines%set('opening'//to_text(j), 'opening'//to_text(j)//trim(merge(' + ', ' - ', b == 1))//' part'//to_text(j))
-            end do
+            turning = stem%w
+            moving = stem%v
+            if (of_accelerations) turning = stem%e
+            if (of_accelerations) moving = stem%a
+            call write_arm(writer, chain%stems(b), turning, arm)
           end associate
+          if (b == 2) turning = negative(turning)
+          if (b == 2) moving = [negative(moving(1)), negative(moving(2))]
+          call add_to_opening(writer, 1, turning)
+          call add_to_opening(writer, 2, moving(1), negative(product_of(turning, arm(2))))
+          call add_to_opening(writer, 3, moving(2), product_of(turning, arm(1)))
         end do
       end if
       name = trim(merge('ddq', 'dq ', of_accelerations))
       do i = 1, size(chain%given)
         s = chain%given(i)
-        associate (step => plan%planar%steps(s), frame => writer%frame(s))
-          rate = trim(name)//'('//to_text(step%coordinate)//')'
-          if (step%turns) then
-            w = product_of(literal(chain%signs(s)*step%turn), rate)
-            do j = 1, 2
-              call lines%keep('arm'//axes(j), sum_of(closing%p(j), negative(frame%p(j))), arm(j))
-            end do
-            call lines%set('opening1', sum_of('opening1', w))
-            call lines%set('opening2', sum_of('opening2', negative(product_of(w, arm(2)))))
-            call lines%set('opening3', sum_of('opening3', product_of(w, arm(1))))
-          else
-            w = product_of(literal(chain%signs(s)), rate)
-            do j = 1, 2
-              call lines%set('opening'//to_text(j + 1), sum_of('opening'//to_text(j + 1), &
-                                                              product_of(w, frame%slide(j))))
-            end do
-          end if
-        end associate
+        rate = product_of(literal(chain%signs(s)), trim(name)//'('//trim(writer%coordinate(s))//')')
+        if (plan%planar%steps(s)%turns) then
+          rate = product_of(literal(plan%planar%steps(s)%turn), rate)
+          call write_arm(writer, s, rate, arm)
+          call add_to_opening(writer, 1, rate)
+          call add_to_opening(writer, 2, negative(product_of(rate, arm(2))))
+          call add_to_opening(writer, 3, product_of(rate, arm(1)))
+        else
+          call add_to_opening(writer, 2, product_of(rate, writer%frame(s)%slide(1)))
+          call add_to_opening(writer, 3, product_of(rate, writer%frame(s)%slide(2)))
+        end if
       end do
     end associate
   end subroutine write_opening
+
+  !> The way from a frame's origin to that of the closing frame.
+  subroutine write_arm(writer, i, turning, arm)
+    type(writer_type), intent(inout) :: writer     !< of the block
+    integer, intent(in) :: i                       !< number of the frame
+    character(len=l), intent(in) :: turning        !< its turning; without any, no way is needed
+    character(len=l), intent(out) :: arm(2)        !< operands [m]
+    integer :: j
+
+    arm = '0'
+    if (turning == '0') return
+    associate (closing => writer%frame(writer%chain%closure%closing), frame => writer%frame(i))
+      do j = 1, 2
+        call writer%lines%keep('arm'//axes(j), sum_of(closing%p(j), negative(frame%p(j))), arm(j))
+      end do
+    end associate
+  end subroutine write_arm
+
+  !> Add terms to one number of the opening of the loop.
+  subroutine add_to_opening(writer, j, term, other)
+    type(writer_type), intent(inout) :: writer           !< of the block
+    integer, intent(in) :: j                             !< 1: angle, 2: x, 3: y
+    character(len=*), intent(in) :: term                 !< an operand or a product
+    character(len=*), intent(in), optional :: other      !< another one
+    character(len=l) :: sum
+
+    sum = term
+    if (present(other)) sum = sum_of(term, other)
+    if (sum == '0') return
+    if (present(other)) then
+      sum = sum_of(writer%opening(j), term, other)
+    else
+      sum = sum_of(writer%opening(j), term)
+    end if
+    writer%opening(j) = 'opening'//to_text(j)
+    call writer%lines%set(trim(writer%opening(j)), sum)
+  end subroutine add_to_opening
 
   !> The rates, or accelerations, of the three coordinates that cancel the opening of the loop.
   subroutine write_rates(plan, block, writer, name)
@@ -148,19 +181,16 @@ contains
     type(block_type), intent(in) :: block          !< its block
     type(writer_type), intent(inout) :: writer     !< of the block
     character(len=*), intent(in) :: name           !< of the array of results
-    character(len=l) :: unit, opening(3)
+    character(len=l) :: unit
     integer :: j
 
-    do j = 1, 3
-      opening(j) = 'opening'//to_text(j)
-    end do
-    call write_rows(writer, opening, 'row')
+    call write_rows(writer, writer%opening, 'row')
     do j = 1, 3
       unit = ''
       if (.not. plan%planar%steps(block%unknowns(j))%turns) unit = writer%number(size(writer%number))
       if (unit == '1') unit = ''
       if (unit /= '') unit = trim(unit)//'*'
-      call writer%lines%set(name//'('//to_text(block%coordinates(j))//')', '-'//trim(unit)//'dot_product(inverse('// &
+      call writer%lines%set(name//'('//trim(writer%coordinate(block%unknowns(j)))//')', '-'//trim(unit)//'dot_product(inverse('// &
                             to_text(j)//', :), [row1, row2, row3])')
     end do
   end subroutine write_rates
@@ -172,7 +202,7 @@ contains
     type(writer_type), intent(inout) :: writer     !< of the block
     character(len=l) :: square(0:plan%n_coordinates), coriolis(0:plan%n_coordinates), sum, rate
     integer :: i, j, p
-    character(len=12) :: k
+    character(len=index_length) :: k
 
     associate (lines => writer%lines)
       square = '0'
@@ -181,12 +211,12 @@ contains
         p = plan%planar%steps(i)%parent
         if (writer%frame(p)%w == '0') cycle
         if (square(p) == '0') then
-          square(p) = 'square'//to_text(p)
+          square(p) = 'square'//writer%name(p)
           call lines%set(square(p), trim(writer%frame(p)%w)//'**2')
         end if
         if (plan%planar%steps(i)%turns) cycle
-        coriolis(i) = 'coriolis'//to_text(i)
-        rate = 'dq('//to_text(plan%planar%steps(i)%coordinate)//')'
+        coriolis(i) = 'coriolis'//writer%name(i)
+        rate = 'dq('//trim(writer%coordinate(i))//')'
         call lines%set(coriolis(i), '2.0_wp*'//trim(product_of(writer%frame(p)%w, rate)))
       end do
       if (writer%chain%used) then
@@ -196,8 +226,8 @@ contains
       end if
       do i = block%first_step, block%last_step
         p = plan%planar%steps(i)%parent
-        rate = 'ddq('//to_text(plan%planar%steps(i)%coordinate)//')'
-        k = to_text(i)
+        rate = 'ddq('//trim(writer%coordinate(i))//')'
+        k = writer%name(i)
         associate (step => plan%planar%steps(i), frame => writer%frame(i), parent => writer%frame(p))
           call lines%keep('e'//trim(k), sum_of(parent%e, product_of(literal(step%turn), rate)), frame%e)
           frame%a(1) = sum_of(parent%a(1), negative(product_of(parent%e, frame%arm(2))), &
@@ -210,7 +240,7 @@ contains
             sum = frame%a(j)
             call lines%keep('a'//axes(j)//trim(k), sum, frame%a(j))
           end do
-          call lines%put('    a(:, '//trim(k)//') = ['//trim(full(frame%e))//', '//trim(full(frame%a(1)))//', '// &
+          call lines%put('    a(:, '//trim(writer%place(i))//') = ['//trim(full(frame%e))//', '//trim(full(frame%a(1)))//', '// &
                          trim(full(frame%a(2)))//']')
         end associate
       end do
@@ -224,41 +254,29 @@ contains
     type(writer_type), intent(inout) :: writer          !< of the block
     character(len=l), intent(in) :: square(0:)          !< (0:M) of the angular velocity of each frame from which a step leads
     character(len=l), intent(in) :: coriolis(0:)        !< (0:M) twice the angular velocity times the rate of each slide
-    character(len=l) :: term(2), sign
+    character(len=l) :: arm(2), sign
     integer :: i, j
 
-    associate (lines => writer%lines, chain => writer%chain)
+    associate (chain => writer%chain)
       do i = block%first_step, block%last_step
         if (.not. abs(chain%signs(i)) > 0.0_wp) cycle
         sign = literal(-chain%signs(i))
         associate (frame => writer%frame(i), whirl => square(plan%planar%steps(i)%parent))
           do j = 1, 2
-            term(j) = product_of(sign, product_of(whirl, frame%arm(j)))
-            call add_to_opening(j, term(j))
+            call add_to_opening(writer, j + 1, product_of(sign, product_of(whirl, frame%arm(j))))
           end do
-          call add_to_opening(1, product_of(sign, product_of(coriolis(i), frame%slide(2))))
-          call add_to_opening(2, negative(product_of(sign, product_of(coriolis(i), frame%slide(1)))))
+          call add_to_opening(writer, 2, product_of(sign, product_of(coriolis(i), frame%slide(2))))
+          call add_to_opening(writer, 3, negative(product_of(sign, product_of(coriolis(i), frame%slide(1)))))
         end associate
       end do
       ! the target's point at the closing frame's origin has a centripetal acceleration about the target's origin
-      associate (closing => writer%frame(chain%closure%closing), target => writer%frame(chain%closure%target))
+      associate (target => writer%frame(chain%closure%target))
+        call write_arm(writer, chain%closure%target, target%w, arm)
         if (target%w == '0') return
         do j = 1, 2
-          call lines%keep('arm'//axes(j), sum_of(closing%p(j), negative(target%p(j))), term(j))
-          call add_to_opening(j, product_of(trim(target%w)//'**2', term(j)))
+          call add_to_opening(writer, j + 1, product_of(trim(target%w)//'**2', arm(j)))
         end do
       end associate
     end associate
-
-  contains
-
-    !> Add a term to one of the displacements.
-    subroutine add_to_opening(axis, term)
-      integer, intent(in) :: axis             !< 1: x, 2: y
-      character(len=*), intent(in) :: term    !< a product
-
-      if (term == '0') return
-      call writer%lines%set('opening'//to_text(axis + 1), sum_of('opening'//to_text(axis + 1), term))
-    end subroutine add_to_opening
   end subroutine write_bias
 end module mech9_made_motion_text
