@@ -23,14 +23,15 @@ contains
     integer, intent(in) :: coordinate                 !< a dependent coordinate
     logical, intent(out) :: known                     !< a choice was found, or it is certain that there is none
     integer, allocatable, intent(out) :: choice(:)    !< coordinates, ascending
-    type(plan_type) :: plan
-    type(state_type) :: state
+    class(plan_type), allocatable :: plan
+    class(state_type), allocatable :: state
     type(mobility_report_type) :: report
     type(error_type), allocatable :: err
     real(wp) :: share(size(model%mechanism%pairs)), q(size(share)), dq(size(share)), ddq(size(share))
     logical :: chosen(size(share))
     integer :: best
 
+    allocate (plan, state)
     known = .false.
     allocate (choice(0))
     q = model%problem%initial%position

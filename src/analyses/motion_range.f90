@@ -71,11 +71,12 @@ contains
     type(end_type), intent(out) :: found   !< the end of the range
     class(stop_request_type), intent(in), optional :: stop   !< is asked before each turn whether the motion ends there
     type(drive_slot_type), allocatable :: drives(:)
-    type(driven_motion_type) :: driven
+    class(driven_motion_type), allocatable :: driven
     type(error_type), allocatable :: err
     real(wp) :: period
     integer :: turn
 
+    allocate (driven)
     call drive_one(plan, start, coordinate, direction, drives)
     call start_driven_motion(drives, plan, start, 0.0_wp, driven, err)
     period = plan%steps(plan%step_of(coordinate))%period/plan%unit_of(coordinate)

@@ -61,12 +61,13 @@ contains
   !> Assemble the mechanism at the start, and tell the user the result.
   subroutine judge_start(conversation)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
-    type(data_file_type) :: given
+    class(data_file_type), allocatable :: given
     type(draft_text_type) :: written
     type(fault_type), allocatable :: faults(:)
     type(error_type), allocatable :: err
     character(len=:), allocatable :: otherwise
 
+    allocate (given)
     call read_draft(conversation%interview%draft, conversation%draft_path, conversation%program, given, written)
     otherwise = 'guesses'
     if (.not. given%failed()) then

@@ -58,10 +58,11 @@ contains
   !> Show the errors of the answers, and all answers when the end is reached first.
   subroutine show_all(conversation)
     class(conversation_type), intent(inout) :: conversation  !< the conversation as it stands
-    type(data_file_type) :: given
+    class(data_file_type), allocatable :: given
     type(draft_text_type) :: written
     type(fault_type), allocatable :: faults(:)
 
+    allocate (given)
     associate (draft => conversation%interview%draft)
       if (.not. conversation%summed_up) then
         write (error_unit, '(/,a)') '-- Summary --'

@@ -18,8 +18,9 @@ contains
   subroutine check_quantities(given, err)
     class(data_file_type), intent(in) :: given            !< the data file
     type(error_type), allocatable, intent(out) :: err     !< allocated if a column is missing
-    type(quantity_record_type) :: columns
+    class(quantity_record_type), allocatable :: columns
 
+    allocate (columns)
     call find_quantities(given%model, columns, err)
   end subroutine check_quantities
 

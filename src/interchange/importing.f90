@@ -188,10 +188,11 @@ contains
     real(wp) :: q(size(series%pairs))
     type(draft_type) :: draft
     type(draft_text_type) :: written
-    type(model_type) :: model
+    class(model_type), allocatable :: model
     logical :: moved, follows(size(series%pairs))
     integer :: chains, k, leader
 
+    allocate (model)
     q = robot%joints(series%pairs%joint)%start
     chains = count(series%closes)
     independent = .true.

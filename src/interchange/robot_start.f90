@@ -77,11 +77,12 @@ contains
     logical, intent(out) :: is_singular              !< they are fewer
     real(wp), intent(out), optional :: units(:)      !< (M) unit of each coordinate on a closed chain, else 0 [rad, m]
     type(partition_type) :: partition
-    type(plan_type) :: plan
-    type(state_type) :: state
+    class(plan_type), allocatable :: plan
+    class(state_type), allocatable :: state
     type(mobility_report_type) :: report
     type(error_type), allocatable :: err
 
+    allocate (plan, state)
     is_singular = .false.
     if (present(units)) units = 0.0_wp
     call new_partition(mechanism%structure, independent, partition)
@@ -121,10 +122,11 @@ contains
     logical, intent(out) :: others(:)                  !< (M) the coordinate should be independent
     type(error_type), allocatable, intent(out) :: err  !< allocated if the chains do not close, or cannot move
     type(partition_type) :: partition
-    type(plan_type) :: plan
-    type(state_type) :: state
+    class(plan_type), allocatable :: plan
+    class(state_type), allocatable :: state
     logical :: is_wrong_choice
 
+    allocate (plan, state)
     others = independent
     call new_partition(mechanism%structure, independent, partition)
     call make_plan(mechanism, partition, q, plan, state, err)

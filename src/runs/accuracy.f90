@@ -101,11 +101,11 @@ contains
     type(error_type), allocatable, intent(out) :: err                !< allocated if it failed
     logical, intent(in), optional :: pictures                        !< the motion of all links is requested; not unless given
     class(interruption_type), intent(inout), optional, target :: interruption   !< is asked whether the runs shall stop
-    type(model_type), target :: varied
+    class(model_type), allocatable, target :: varied
     type(search_type) :: search
     integer :: method
 
-    varied = model
+    allocate (varied, source=model)
     varied%request%solver%accuracy = 0.0_wp
     call check_method(model%request%solver%method, method, err)
     if (allocated(err)) return

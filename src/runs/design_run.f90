@@ -160,9 +160,10 @@ contains
   subroutine columns_of_runs(model, columns)
     type(model_type), intent(in) :: model                   !< the model
     type(columns_type), intent(out) :: columns              !< of each run
-    type(force_record_type) :: forces
+    class(force_record_type), allocatable :: forces
     type(link_record_type) :: links
 
+    allocate (forces)
     call find_columns(model, model%program == dynamics .and. model%request%output%energies, &
                       model%request%solver%accuracy > 0.0_wp .and. .not. model%is_driven(), columns, forces, links)
   end subroutine columns_of_runs

@@ -24,10 +24,10 @@ contains
   function columns_of_equilibria(model) result(columns)
     type(model_type), intent(in) :: model   !< the model
     type(columns_type) :: columns
-    type(force_record_type) :: forces
+    class(force_record_type), allocatable :: forces
     integer :: k
 
-    allocate (columns%names(0), columns%units(0), columns%long_names(0))
+    allocate (forces, columns%names(0), columns%units(0), columns%long_names(0))
     columns%system = model%mechanism%units
     call columns%append('equilibrium', '', 'number of the position of equilibrium')
     do k = 1, size(model%mechanism%pairs)

@@ -12,7 +12,7 @@ module mech9_rest
   use mech9_start_path, only: start_way_type
   use mech9_simulation, only: interruption_type
   use mech9_resting_mechanism, only: resting_type
-  use mech9_linearised_equilibrium, only: equilibrium_type
+  use mech9_linearised_equilibrium, only: equilibrium_type, copy_equilibrium
   use mech9_mode_shapes, only: displacement, position_in_vibration
   use mech9_film, only: film_type, new_film
   use mech9_equilibria, only: find_equilibrium, find_equilibria
@@ -70,10 +70,11 @@ contains
     class(rest_type), intent(inout) :: self             !< with room for plan and start; gets them
     type(model_type), intent(in) :: model               !< the model
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    type(plan_type) :: first_plan
-    type(state_type) :: first_start
+    class(plan_type), allocatable :: first_plan
+    class(state_type), allocatable :: first_start
     integer :: i, k
 
+    allocate (first_plan, first_start)
     call assemble_model(model, first_plan, first_start, err, self%way)
     if (.not. allocated(err)) &
       call make_plan(model%mechanism, model%problem%partition, first_start%q, self%plan, self%start, err, &
@@ -170,23 +171,30 @@ contains
   subroutine leave_out_behind_stops(model, found)
     type(model_type), intent(in) :: model                              !< the model
     type(equilibrium_type), allocatable, intent(inout) :: found(:)     !< equilibria
-    type(equilibrium_type), allocatable :: kept(:)
     logical :: behind(size(found))
-    integer :: i, n
+    integer :: i
 
     do i = 1, size(found)
       behind(i) = is_behind_stop(model, found(i)%resting)
     end do
     if (.not. any(behind)) return
-    allocate (kept(count(.not. behind)))
-    n = 0
-    do i = 1, size(found)
-      if (behind(i)) cycle
-      n = n + 1
-      kept(n) = found(i)
-    end do
-    call move_alloc(kept, found)
+    call take_places(pack([(i, i=1, size(found))], .not. behind), count(.not. behind), found)
   end subroutine leave_out_behind_stops
+
+  !> Make a list of some of the equilibria of a list, with room for others behind them.
+  subroutine take_places(places, n, list)
+    integer, intent(in) :: places(:)                                 !< of those that stay, in their order
+    integer, intent(in) :: n                                         !< length afterwards
+    type(equilibrium_type), allocatable, intent(inout) :: list(:)    !< equilibria
+    type(equilibrium_type), allocatable :: taken(:)
+    integer :: i
+
+    allocate (taken(n))
+    do i = 1, size(places)
+      call copy_equilibrium(list(places(i)), taken(i))
+    end do
+    call move_alloc(taken, list)
+  end subroutine take_places
 
   !> Find rest against rigid stops, from the start of the model: the first choice of ends that serves, or all of them. The ends are tried
   !> one by one, then two together, and so on.
@@ -195,12 +203,12 @@ contains
     logical, intent(in) :: all_choices                                 !< all that serve are wanted
     type(equilibrium_type), allocatable, intent(inout) :: found(:)     !< equilibria so far; gets more
     type(end_type), allocatable :: ends(:)
-    type(equilibrium_type), allocatable :: more(:)
-    type(equilibrium_type) :: candidate
+    class(equilibrium_type), allocatable :: candidate
     integer, allocatable :: choice(:)
     integer :: n_free, trial, i
     logical :: serves
 
+    allocate (candidate)
     call rigid_ends(model, ends)
     n_free = count(model%problem%partition%kind == free_coordinate)
     choice = [1]
@@ -208,12 +216,8 @@ contains
       if (size(choice) > min(size(ends), n_free)) return
       call rest_on(model, ends(choice), candidate, serves)
       if (serves) then
-        allocate (more(size(found) + 1))
-        do i = 1, size(found)
-          more(i) = found(i)
-        end do
-        more(size(more)) = candidate
-        call move_alloc(more, found)
+        call take_places([(i, i=1, size(found))], size(found) + 1, found)
+        call copy_equilibrium(candidate, found(size(found)))
         if (.not. all_choices) return
       end if
       call next_choice(size(ends), choice)

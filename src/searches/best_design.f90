@@ -20,10 +20,11 @@ contains
     type(model_type), intent(in) :: model                   !< the model
     type(synthesis_type), intent(in) :: synthesis           !< with its optima, best first
     character(len=:), allocatable, intent(out) :: text      !< of the data file
-    type(model_type) :: designed
+    class(model_type), allocatable :: designed
     type(error_type), allocatable :: err
     character(len=:), allocatable :: history
 
+    allocate (designed)
     call history_of_design(model, synthesis, history)
     ! there is such a model, because its motion was followed
     call synthesis%space%variable%at(synthesis%values_of(1), designed, err)

@@ -59,13 +59,14 @@ contains
     type(model_type), intent(in) :: model                           !< the model with the values of the data file
     class(interruption_type), intent(in) :: interruption            !< is asked whether a run for quantities shall stop
     type(error_type), allocatable, intent(out) :: err               !< allocated if no search can be made
-    type(model_type) :: present
-    type(plan_type) :: plan
+    class(model_type), allocatable :: present
+    class(plan_type), allocatable :: plan
 
     if (allocated(self%synthesis)) deallocate (self%synthesis)
     allocate (self%synthesis)
     self%searched => variable
-    present = model
+    allocate (present, source=model)
+    allocate (plan)
     if (model%program == dynamics) then
       ! runs follow from forces; the search itself knows the mechanism at their start
       if (.not. allocated(self%held)) allocate (self%held)

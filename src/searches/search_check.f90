@@ -74,11 +74,11 @@ contains
   subroutine check_start(model, err)
     type(model_type), intent(in) :: model                 !< the model with the values of the data file
     type(error_type), allocatable, intent(out) :: err     !< allocated if it cannot
-    type(model_type), target :: moving
+    class(model_type), allocatable, target :: moving
     type(model_motion_type) :: motion
 
     if (model%is_driven()) return
-    moving = model
+    allocate (moving, source=model)
     call motion%assemble(moving, err)
     if (.not. allocated(err)) call motion%prepare(moving, err)
     call motion%close()

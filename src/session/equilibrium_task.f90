@@ -31,11 +31,12 @@ contains
     type(data_file_type), intent(inout) :: given            !< the data file; it gets the errors
     logical, intent(out) :: reported                        !< the report is written
     type(kept_rows_type), intent(inout), optional :: kept   !< gets the rows of the table, too
-    type(rest_of_file_type) :: rest
+    class(rest_of_file_type), allocatable :: rest
     type(picture_requests_type) :: pictures
     type(error_type), allocatable :: err, interruption
 
     reported = .false.
+    allocate (rest)
     allocate (rest%equilibria(0))
     if (options%has('animate') .or. options%has('sketch')) call read_picture_requests(options, given, pictures, err)
     if (.not. allocated(err)) call rest%assemble(given%model, err)

@@ -79,9 +79,10 @@ contains
     type(free_simulation_type), intent(out) :: simulation   !< to be started
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     logical, intent(in), optional :: pictures               !< the motion of all links is requested; not unless given
-    type(plan_type) :: used, given
-    type(state_type) :: start
+    class(plan_type), allocatable :: used, given
+    class(state_type), allocatable :: start
 
+    allocate (used, given, start)
     simulation%model => model
     simulation%with_energies = model%request%output%energies
     simulation%with_conditioning = model%request%output%conditioning

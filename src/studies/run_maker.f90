@@ -195,8 +195,9 @@ contains
     integer, intent(in) :: number                  !< of the run in the whole study, from 1
     type(made_run_type), intent(out) :: run        !< the run, which may have failed
     class(interruption_type), intent(inout), optional :: interruption   !< is asked whether the run shall stop
-    type(model_type), target :: model
+    class(model_type), allocatable, target :: model
 
+    allocate (model)
     run%number = number
     if (present(interruption)) call interruption%begin_run(number)
     allocate (run%values(size(self%parameters)))

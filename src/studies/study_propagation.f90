@@ -33,11 +33,12 @@ contains
     class(interruption_type), intent(inout), target :: interruption    !< is asked whether the run shall stop
     type(propagation_type), allocatable, intent(out) :: found(:)       !< (quantities) none where it fails
     type(error_type), allocatable, intent(out) :: err                  !< allocated if it failed, with a sentence
-    type(model_type), target :: mean
+    class(model_type), allocatable, target :: mean
     real(wp) :: numbers(size(model%request%quantities)), values(size(model%parameters))
     real(wp) :: gradient(size(model%parameters), size(model%request%quantities))
     integer :: i
 
+    allocate (mean)
     allocate (found(0))
     if (size(numbers) == 0) return
     values = [(mean_of(model%parameters(i)), i=1, size(values))]

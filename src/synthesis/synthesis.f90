@@ -76,7 +76,7 @@ contains
     integer, intent(in) :: start                                       !< number of the start, from 1
     type(found_design_type), allocatable, intent(out) :: found(:)      !< designs to which it led; not allocated where the
                                                                        !< user interrupted it
-    type(search_type), allocatable :: search
+    class(search_type), allocatable :: search
 
     allocate (search)
     call new_search(space, self%targets, search)
@@ -162,13 +162,13 @@ contains
     class(synthesis_type), intent(inout) :: self             !< the synthesis
     type(optimum_design_type), intent(inout) :: optimum      !< the optimum; gets its coordinates at the start and its times
     logical, intent(out) :: holds                            !< its motion has the value that was found
-    type(design_space_type), target :: alone
-    type(design_type) :: design
-    type(open_position_type) :: position
-    type(exact_fit_type), target :: fit
-    type(design_limits_type) :: limits
-    type(limited_fit_type) :: limited
-    type(state_type) :: start
+    class(design_space_type), allocatable, target :: alone
+    class(design_type), allocatable :: design
+    class(open_position_type), allocatable :: position
+    class(exact_fit_type), allocatable, target :: fit
+    class(design_limits_type), allocatable :: limits
+    class(limited_fit_type), allocatable :: limited
+    class(state_type), allocatable :: start
     type(error_type), allocatable :: err
     real(wp), allocatable :: at(:), parts(:), numbers(:), slopes(:, :)
     real(wp) :: all(size(self%space%values)), value
@@ -179,6 +179,7 @@ contains
     if (holds) return
     all = self%space%values
     all(self%space%varied) = optimum%x
+    allocate (alone, design, position, fit, limits, limited, start)
     allocate (alone%model, alone%plan)
     call self%space%variable%at(all, alone%model, err)
     if (allocated(err)) return

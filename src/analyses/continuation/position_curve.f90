@@ -136,12 +136,13 @@ contains
     real(wp), intent(in) :: q(:)                          !< (M) their values, and guesses of the others [rad, m]
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
     type(partition_type) :: partition
-    type(plan_type) :: plan
-    type(state_type) :: position
+    class(plan_type), allocatable :: plan
+    class(state_type), allocatable :: position
     real(wp) :: values(size(q)), rates(size(q)), accelerations(size(q))
     logical :: independent(size(q))
     integer :: i
 
+    allocate (plan, position)
     independent = self%partition%kind == driven_coordinate
     independent(free) = .true.
     call self%partition%with_independent(self%model%mechanism%structure, independent, partition)

@@ -95,7 +95,7 @@ contains
     type(state_type), intent(in) :: assembled           !< closed, with rates and accelerations of the driven coordinates
     type(equilibrium_type), intent(out) :: found        !< the position of rest
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    type(pressed_type), allocatable :: pressed
+    class(pressed_type), allocatable :: pressed
     real(wp), allocatable :: forces(:)
     type(error_type), allocatable :: failure
     integer :: trial
@@ -138,7 +138,7 @@ contains
     type(error_type), allocatable, intent(out) :: err                 !< allocated if it failed
     class(interruption_type), intent(in), optional :: interruption    !< is asked before each start whether the search shall stop
     type(equilibrium_type), allocatable :: near(:)
-    type(pressed_type), allocatable :: pressed
+    class(pressed_type), allocatable :: pressed
     type(error_type), allocatable :: failure, first
     integer, allocatable :: kept(:)
     integer :: i
@@ -202,7 +202,7 @@ contains
     type(state_type), intent(in) :: assembled           !< closed, with the motion of the driven coordinates
     type(pressed_type), intent(inout) :: pressed        !< gets the model and its stiffness
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    type(resting_type), allocatable :: resting
+    class(resting_type), allocatable :: resting
     type(load_slot_type), allocatable :: more(:)
     real(wp) :: energy
     integer :: i
@@ -259,7 +259,7 @@ contains
     real(wp), intent(in) :: first(:)                    !< (rigid contacts) forces of the springs without gaps [N]
     type(equilibrium_type), intent(inout) :: found      !< the position on these springs; then on rigid contacts
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    type(equilibrium_type), allocatable :: next
+    class(equilibrium_type), allocatable :: next
     real(wp), dimension(size(pressed%contacts)) :: forces, new
     real(wp) :: stiffness, error, before
     integer :: i, starts
@@ -379,7 +379,7 @@ contains
     type(resting_type), intent(inout) :: beside          !< the position beside it; the coordinates that follow change
     logical, intent(out) :: closed                       !< the gaps are closed
     type(error_type), allocatable, intent(out) :: err    !< allocated if a load failed
-    type(resting_type) :: aside, next
+    class(resting_type), allocatable :: aside, next
     integer, allocatable :: numbers(:)
     real(wp), allocatable :: rows(:, :), gaps(:), changes(:)
     integer :: i
@@ -390,7 +390,7 @@ contains
     associate (contacts => mechanism%contacts)
       numbers = pack([(i, i=1, size(contacts))], contacts%is_rigid .and. any(abs(rest%state%contact_force) > 0.0_wp, dim=1))
     end associate
-    allocate (changes(size(numbers)))
+    allocate (aside, next, changes(size(numbers)))
     call copy_resting(beside, aside)
     deallocate (aside%following, aside%follow)
     aside%free = rest%following

@@ -42,9 +42,9 @@ contains
     type(state_type), intent(in) :: assembled           !< closed, with rates and accelerations of the driven coordinates
     type(equilibrium_type), intent(out) :: found        !< the equilibrium
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
+    class(held_position_type), allocatable :: held
 
-    type(held_position_type) :: held
-
+    allocate (held)
     call hold_setpoints(mechanism, partition, plan, assembled, held, err)
     if (.not. allocated(err)) call put_to_rest(mechanism, held%partition, held%plan, held%state, found%resting, err)
     if (allocated(err)) return
@@ -88,11 +88,11 @@ contains
     type(posture_type) :: posture
     type(random_type) :: random
     type(error_type), allocatable :: failure
-    type(held_position_type) :: held
+    class(held_position_type), allocatable :: held
     integer :: i, n
     logical :: reached, may_fall
 
-    allocate (found, list(0), slots(16))
+    allocate (found, held, list(0), slots(16))
     n = 0
     may_fall = .false.
     if (present(falls)) may_fall = falls
@@ -147,9 +147,10 @@ contains
     type(equilibrium_type), intent(inout) :: found      !< the equilibrium
     logical, intent(out) :: reached                     !< there is one
     type(error_type), allocatable, intent(out) :: err   !< allocated if a load failed
-    type(resting_type) :: resting, start
+    class(resting_type), allocatable :: resting, start
     type(error_type), allocatable :: at_lock
 
+    allocate (resting, start)
     call start_anywhere(mechanism, held, random, resting, reached)
     if (.not. reached) return
     if (may_fall) call copy_resting(resting, start)
@@ -177,12 +178,13 @@ contains
     type(random_type), intent(inout) :: random        !< source of random numbers
     type(resting_type), intent(out) :: resting        !< the mechanism in that position
     logical, intent(out) :: reached                   !< the chains close
-    type(state_type) :: position
+    class(state_type), allocatable :: position
     type(error_type), allocatable :: err
     real(wp) :: change
     integer :: trial, i, k
 
     reached = .false.
+    allocate (position)
     call put_to_rest(mechanism, held%partition, held%plan, held%state, resting, err)
     if (allocated(err)) return
     do trial = 1, most_trials
@@ -210,12 +212,13 @@ contains
     type(mechanism_type), intent(in) :: mechanism     !< the mechanism
     type(state_type), intent(in) :: assembled         !< the position
     type(resting_type), intent(inout) :: resting      !< in equilibrium
-    type(resting_type) :: other
-    type(state_type) :: position
+    class(resting_type), allocatable :: other
+    class(state_type), allocatable :: position
     type(error_type), allocatable :: err
     real(wp) :: period, turned
     integer :: k
 
+    allocate (other, position)
     call copy_resting(resting, other)
     do k = 1, size(resting%state%q)
       period = resting%plan%steps(resting%plan%step_of(k))%period
@@ -239,10 +242,11 @@ contains
     type(equilibrium_slot_type), allocatable, intent(inout) :: slots(:)   !< equilibria found so far; it grows
     integer, intent(inout) :: n                                           !< their number
     type(equilibrium_slot_type), allocatable :: longer(:)
-    type(state_type) :: state
+    class(state_type), allocatable :: state
     real(wp), allocatable :: numbers(:)
     integer :: i
 
+    allocate (state)
     call copy_state(found%resting%state, state)
     numbers = posture%numbers(found%resting%plan, state)
     do i = 1, n

@@ -76,8 +76,9 @@ contains
     type(state_type), intent(out) :: position              !< closed
     logical, intent(out) :: found                          !< the position exists
     type(error_type), allocatable, intent(out) :: err      !< allocated if a load failed
-    type(resting_type) :: other
+    class(resting_type), allocatable :: other
 
+    allocate (other)
     call try_step(mechanism, equilibrium%resting, step, other, found, err)
     if (found) call close_gaps(mechanism, equilibrium%resting, other, found, err)
     if (found) position = other%state

@@ -126,10 +126,11 @@ contains
     logical, intent(out) :: moved                       !< it can go there
     type(error_type), allocatable, intent(out) :: err   !< allocated if a load failed
     type(drive_slot_type), allocatable :: drives(:)
-    type(driven_motion_type) :: driven
-    type(state_type) :: position
+    class(driven_motion_type), allocatable :: driven
+    class(state_type), allocatable :: position
     type(error_type), allocatable :: failure
 
+    allocate (driven, position)
     call drive_step(resting, step, drives)
     call start_driven_motion(drives, resting%plan, resting%state, 0.0_wp, driven, failure, derivatives=1)
     if (.not. allocated(failure)) call advance(drives, resting%plan, driven, 1.0_wp, failure)
@@ -252,10 +253,11 @@ contains
     type(error_type), allocatable, intent(out) :: err   !< allocated if a load failed
     type(resting_type) :: other
     type(partition_type) :: partition
-    type(plan_type) :: plan
-    type(state_type) :: position
+    class(plan_type), allocatable :: plan
+    class(state_type), allocatable :: position
     type(error_type), allocatable :: failure
 
+    allocate (plan, position)
     call resting%partition%with_independent(mechanism%structure, independent, partition)
     call plan_by_geometry(mechanism, partition, resting%plan, resting%state%q, plan, position, failure)
     if (allocated(failure)) return

@@ -97,15 +97,16 @@ contains
     type(partition_type), intent(in) :: partition       !< driven, free and dependent coordinates
     type(resting_type), intent(inout) :: resting        !< in equilibrium with driven setpoints; then without
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
-    type(resting_type) :: other
-    type(plan_type) :: plan
-    type(state_type) :: state
+    class(resting_type), allocatable :: other
+    class(plan_type), allocatable :: plan
+    class(state_type), allocatable :: state
     type(motor_action_type) :: action
     real(wp) :: forces(size(resting%state%q)), values(size(mechanism%motors))
     integer :: i
     logical :: is_held
 
     if (size(mechanism%motors) == 0) return
+    allocate (other, plan, state)
     forces = resting%linearisation%forces
     is_held = .false.
     do i = 1, size(mechanism%motors)

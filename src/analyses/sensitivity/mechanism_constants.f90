@@ -36,8 +36,9 @@ contains
     real(wp), intent(in) :: length                   !< the mechanism's size, which is not varied [m]
     real(wp), intent(in) :: origin(3)                !< origin of frame 0 in link 1, which is not varied [m]
     real(wp), allocatable, intent(out) :: values(:)  !< the row
-    type(plan_type) :: plan
+    class(plan_type), allocatable :: plan
 
+    allocate (plan)
     call lay_out_frames(model%mechanism, model%problem%partition, model%problem%initial%position, plan, length, origin)
     call take_constants(model, plan, values)
   end subroutine gather_constants

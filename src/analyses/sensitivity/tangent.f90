@@ -117,9 +117,10 @@ contains
     type(model_type), intent(in) :: model                   !< the present model
     integer, intent(in) :: number                           !< of the parameter
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    type(model_type) :: unused
+    class(model_type), allocatable :: unused
 
     if (.not. allocated(model%parameters(number)%through)) return
+    allocate (unused)
     if (size(model%parameters(number)%through) > 0) call variable%along(values_of(model), number, 0.0_wp, unused, err)
   end subroutine try_formulas
 
@@ -292,9 +293,10 @@ contains
     real(wp), intent(in) :: distance                        !< of its value from the present one
     type(plan_type), intent(inout) :: plan                  !< scratch: the plan of the present model, with other numbers
     real(wp), allocatable, intent(out) :: constants(:)      !< the constants
-    type(model_type) :: model
+    class(model_type), allocatable :: model
     type(error_type), allocatable :: err
 
+    allocate (model)
     call variable%along(values_of(present), number, distance, model, err)
     if (.not. allocated(err)) then
       if (all(model%problem%partition%kind == present%problem%partition%kind)) then

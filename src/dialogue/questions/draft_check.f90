@@ -188,7 +188,7 @@ contains
     integer, intent(in) :: place                           !< place among the groups of that name, from 1
     character(len=:), allocatable, intent(out) :: problem  !< messages, a line each; empty: nothing is wrong
     type(draft_type) :: trial
-    type(data_file_type) :: given
+    class(data_file_type), allocatable :: given
     type(structure_type) :: structure
     type(partition_type) :: partition
     type(draft_text_type) :: written
@@ -196,6 +196,7 @@ contains
     type(fault_type), allocatable :: faults(:)
     integer :: i
 
+    allocate (given)
     problem = ''
     if (group == 'structure' .or. (group == 'pair' .and. name == 'links' .and. outline%way == 'pairs')) then
       trial = structural_part(draft, outline)

@@ -24,11 +24,12 @@ contains
     type(diagnostics_type), intent(out) :: wrong       !< without an error where nothing can be said against it
     type(diagnostics_type) :: of_data
     type(document_type) :: bare
-    type(model_type) :: model
-    type(plan_type) :: plan
-    type(state_type) :: start
+    class(model_type), allocatable :: model
+    class(plan_type), allocatable :: plan
+    class(state_type), allocatable :: start
     type(error_type), allocatable :: err
 
+    allocate (model, plan, start)
     wrong%sources = sources_of%sources
     of_data%sources = sources_of%sources
     call leave_drives_out(document, bare)

@@ -352,11 +352,12 @@ contains
     type(position_curve_type), intent(inout) :: curve            !< gets the problem
     type(curve_point_type), intent(inout) :: start               !< gets the first point
     type(error_type), allocatable, intent(out) :: err            !< allocated if it failed
-    type(rest_type), allocatable :: rest
-    type(plan_type) :: first_plan, plan
-    type(state_type) :: first_start, state
+    class(rest_type), allocatable :: rest
+    class(plan_type), allocatable :: first_plan, plan
+    class(state_type), allocatable :: first_start, state
 
     if (request%of == 'position') then
+      allocate (first_plan, first_start, plan, state)
       call assemble_model(model, first_plan, first_start, err)
       if (.not. allocated(err)) call make_plan(model%mechanism, model%problem%partition, first_start%q, plan, state, err, &
                                                planning_settings_type(in_space=.true.))

@@ -27,9 +27,10 @@ contains
     real(wp), intent(out) :: q(:)                       !< (M) coordinates of the position [rad, m]
     type(error_type), allocatable, intent(out) :: err   !< allocated if it failed
     type(drive_slot_type), allocatable :: lines(:)
-    type(driven_motion_type) :: driven
+    class(driven_motion_type), allocatable :: driven
     real(wp), dimension(size(q)) :: dq, ddq
 
+    allocate (driven)
     dq = 0.0_wp
     ddq = 0.0_wp
     q = state%q

@@ -27,7 +27,7 @@ contains
     type(data_file_type), intent(inout), target :: given            !< the data file; it gets the errors
     logical, intent(out) :: reported                                !< a report was asked for, and it is written
     type(processes_type), intent(inout) :: processes                !< those that make the starts together
-    type(kept_search_type), allocatable, target :: found
+    class(kept_search_type), allocatable, target :: found
     type(kept_files_type) :: wanted
     type(optimum_pictures_type) :: pictures
     type(signal_interruption_type) :: interruption
