@@ -211,7 +211,8 @@ void mech9_positions_destroy(mech9_positions *positions);
 int mech9_positions_coordinates(const mech9_positions *positions);                /* M */
 int mech9_positions_independent(const mech9_positions *positions);                /* I */
 int mech9_positions_independent_at(const mech9_positions *positions, int i);      /* number of the coordinate, from 1 */
-/* Rates and accelerations are found where their arrays are given. codes[n]: 0, or why a position was not reached. */
+/* Rates and accelerations are found where their arrays are given. codes[n]: 0, or why a position was not reached; 6 also where it is
+ * singular, so that rates of several independent coordinates do not determine the others. */
 int mech9_positions_find(mech9_positions *positions, int n, const double *values, const double *rates,
                          const double *accelerations, const volatile int *stop, double *q, double *dq, double *ddq, int *codes,
                          mech9_error *error);

@@ -515,7 +515,10 @@ class Mechanism:
         return self._positions(threads, q)[0]
 
     def rates(self, q: Any, dq: Any, *, threads: int = 1) -> Positions:
-        """Rates of all coordinates (n, M) in positions q (n, I), from the rates dq (n, I) of the independent ones."""
+        """Rates of all coordinates (n, M) in positions q (n, I), from the rates dq (n, I) of the independent ones.
+
+        Singular positions of several independent coordinates have code 6 and no rates.
+        """
         return self._positions(threads, q, dq)[1]
 
     def accelerations(self, q: Any, dq: Any, ddq: Any, *, threads: int = 1) -> Positions:

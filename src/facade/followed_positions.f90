@@ -5,7 +5,8 @@ module mech9_followed_positions
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_is_finite
   use mech9_program_kind, only: kinematics
   use mech9_kinds, only: wp
-  use mech9_error, only: error_type, raise, exit_usage, exit_data, exit_interrupted
+  use mech9_tolerances, only: singular_conditioning
+  use mech9_error, only: error_type, raise, exit_usage, exit_data, exit_singular, exit_interrupted
   use mech9_text, only: to_text
   use mech9_counted, only: counted
   use mech9_sorting, only: sort_by
@@ -120,7 +121,7 @@ contains
   end subroutine independent
 
   !> Find positions, and rates and accelerations in them. A position that is not reached has the exit code of its failure, and is not
-  !> a number; one with a value that is not finite has exit_data. Fails with exit_usage where no mechanism is assembled or the arrays
+  !> a number; singular positions of several independent coordinates have exit_singular and no rates; one with a value that is not finite has exit_data. Fails with exit_usage where no mechanism is assembled or the arrays
   !> have other shapes, with exit_interrupted where the search is stopped.
   subroutine find(self, values, q, codes, err, interruption, rates, dq, accelerations, ddq)
     class(followed_positions_type), intent(inout) :: self           !< the positions
@@ -348,6 +349,7 @@ contains
       type(plan_type), pointer :: plan
       type(state_type), pointer :: state
       type(state_type), allocatable :: moving
+      logical :: regular
 
       if (allocated(failure)) then
         codes(place) = failure%code
@@ -364,12 +366,16 @@ contains
       allocate (moving)
       call copy_state(state, moving)
       if (present(ddq)) then
-        call move(self, plan, rates(:, place), moving, accelerations(:, place))
-        ddq(:, place) = moving%ddq/plan%result_unit
+        call move(self, plan, rates(:, place), moving, regular, accelerations(:, place))
+        if (regular) ddq(:, place) = moving%ddq/plan%result_unit
       else
-        call move(self, plan, rates(:, place), moving)
+        call move(self, plan, rates(:, place), moving, regular)
       end if
-      dq(:, place) = moving%dq/plan%rate_unit
+      if (regular) then
+        dq(:, place) = moving%dq/plan%rate_unit
+      else
+        codes(place) = exit_singular
+      end if
     end subroutine take_position
 
     !> Take rates and accelerations of the motion of a single independent coordinate, whose rate is 1 or -1 in the state, by the chain
@@ -415,16 +421,18 @@ contains
     if (.not. allocated(err)) call self%motion%simulation%start(err, interruption)
   end subroutine start_line
 
-  !> Find rates and accelerations in a position, from those of the independent coordinates.
-  subroutine move(self, plan, rates, state, accelerations)
+  !> Find rates and accelerations in a position, from those of the independent coordinates, which determine them where it is regular.
+  subroutine move(self, plan, rates, state, regular, accelerations)
     type(followed_positions_type), intent(in) :: self           !< the positions
     type(plan_type), intent(in) :: plan                         !< the plan of the position
     real(wp), intent(in) :: rates(:)                            !< (I) [unit of the data file]
     type(state_type), intent(inout) :: state                    !< the position; gets rates and accelerations
+    logical, intent(out) :: regular                             !< the position is not singular
     real(wp), intent(in), optional :: accelerations(:)          !< (I) [unit of the data file/s^2]; 0 unless given
     type(block_work_type) :: work
     integer :: b
 
+    regular = .true.
     state%dq(self%driven) = 0.0_wp
     state%ddq(self%driven) = 0.0_wp
     state%dq(self%moved) = rates*plan%rate_unit(self%moved)
@@ -432,6 +440,8 @@ contains
     do b = 1, size(plan%blocks)
       work = new_block_work(plan%blocks(b))
       call factorize_block(plan, plan%blocks(b), state, work)
+      if (size(plan%blocks(b)%unknowns) > 0) regular = work%equations%conditioning() >= singular_conditioning
+      if (.not. regular) return
       call solve_motion(plan, plan%blocks(b), state, work)
     end do
   end subroutine move

@@ -67,6 +67,7 @@ contains
     if (tester%runs('random_four_bars')) call random_four_bars(tester)
     if (tester%runs('special_positions')) call special_positions(tester)
     if (tester%runs('rates_in_crossings')) call rates_in_crossings(tester)
+    if (tester%runs('crossings_of_two')) call crossings_of_two(tester)
     if (tester%runs('other_structures')) call other_structures(tester)
     if (tester%runs('spacings')) call spacings(tester)
     if (tester%runs('next_to_the_start')) call next_to_the_start(tester)
@@ -345,6 +346,39 @@ contains
     end do
     call positions%close()
   end subroutine rates_in_crossings
+
+  !> A parallelogram with an arm that moves by itself: a position in which branches cross has no rates for two given ones, and says so.
+  subroutine crossings_of_two(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    type(mechanism_type) :: mechanism
+    type(positions_type) :: positions
+    type(error_type), allocatable :: err
+    real(wp), parameter :: pi = acos(-1.0_wp)
+    real(wp), dimension(2, 3) :: given
+    real(wp), dimension(5, 3) :: q, dq
+    integer :: codes(3), i
+    character(len=:), allocatable :: text
+
+    text = four_bar([0.4_wp, 0.15_wp, 0.4_wp, 0.15_wp], 1)
+    i = index(text, '&structure')
+    text = '&mechanism links=5, coordinates=5 /'//nl//'&structure cq=1,5 /'//text(i + 17:)//nl// &
+           '&pair coordinate=5, links=4,5, kind=''revolute'', axis=0,0,1, point=0.1,0,0, moving_point=0,0,0 /'
+    call read_text(text, mechanism, err)
+    call positions%begin(mechanism, err)
+    call tester%no_error(err, 'a parallelogram with an arm is put together')
+    if (allocated(err)) return
+    given(:, 1) = [1.0_wp, 0.5_wp]
+    given(:, 2) = [pi, 0.5_wp]
+    given(:, 3) = [4.0_wp, 0.5_wp]
+    call positions%find(given, q, codes, err, rates=spread([2.0_wp, 1.0_wp], 2, 3), dq=dq)
+    call tester%is_true(all(codes == [0, 6, 0]), 'a singular position is told')
+    call tester%is_true(all(abs(q(3, :) - given(1, :)) < 1.0e-9_wp), 'all positions are those of a parallelogram')
+    call tester%is_true(all(ieee_is_nan(dq(:, 2))), 'it has no rates')
+    do i = 1, 3, 2
+      call tester%is_true(all(abs(dq(:, i) - [2.0_wp, -2.0_wp, 2.0_wp, -2.0_wp, 1.0_wp]) < 1.0e-9_wp), 'rates of the others')
+    end do
+    call positions%close()
+  end subroutine crossings_of_two
 
   !> Two chains, a slide on an arm, few positions far from each other.
   subroutine other_structures(tester)

@@ -74,7 +74,7 @@ module mech9_lane_group
     real(wp) :: h(lanes) = 0.0_wp                        !< its length [s]; 0: beside the last position
     real(wp) :: h_higher(lanes) = 0.0_wp                 !< the same, 0 where higher factors of polynomials do not serve
     real(wp) :: per_h(lanes) = 1.0_wp                    !< one over the length [1/s]
-    real(wp) :: taken(lanes) = 0.0_wp                    !< length of the step to the last position; 0: there is none [s]
+    real(wp) :: taken(lanes) = 0.0_wp                    !< length of the step to the last position; 0: no polynomial predicts from it [s]
   end type lane_group_type
 
 contains

@@ -20,7 +20,7 @@ module mech9_lane_tolerances
   !> Longest step of an independent coordinate between positions, in its unit: half of the longest that is ever trusted, since lanes
   !> cannot try shorter ones.
   real(wp), parameter :: longest_way = 0.125_wp
-  !> A shorter step leaves the polynomial that predicts as it is, since it would only hold round-off; in the unit of the coordinate.
+  !> After a shorter step, in the unit of the coordinate, no polynomial predicts: it would only hold round-off.
   real(wp), parameter :: least_way = 1.0e-9_wp
   !> Sines below this have angles by four terms of the series of the arc sine.
   real(wp), parameter :: small_sine = 1.0e-2_wp
