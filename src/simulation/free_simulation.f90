@@ -79,10 +79,9 @@ contains
     type(free_simulation_type), intent(out) :: simulation   !< to be started
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
     logical, intent(in), optional :: pictures               !< the motion of all links is requested; not unless given
-    class(plan_type), allocatable :: used, given
-    class(state_type), allocatable :: start
+    type(plan_type) :: used, given
+    type(state_type) :: start
 
-    allocate (used, given, start)
     simulation%model => model
     simulation%with_energies = model%request%output%energies
     simulation%with_conditioning = model%request%output%conditioning
