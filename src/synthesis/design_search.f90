@@ -208,7 +208,11 @@ contains
                      seen%times, came)
     first = minloc((seen%times - seen%exact%start)*sign(1.0_wp, seen%exact%end - seen%exact%start), dim=1, &
                    mask=seen%targets%turned == 0)
-    place = search_place_type(x, y(size(y, 1), seen%exact%free%target), space%model%problem%initial%position)
+    place%x = x
+    associate (targets => seen%exact%free%target)
+      place%parts = [(y(size(y, 1), targets(i)), i=1, size(targets))]
+    end associate
+    place%q = space%model%problem%initial%position
     associate (dependent => seen%relaxed%dependent)
       do i = 1, size(dependent)
         place%q(dependent(i)) = y(i, first)*space%plan%unit_of(dependent(i))

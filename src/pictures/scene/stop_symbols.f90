@@ -227,7 +227,7 @@ contains
     real(wp) :: ray(3)
     real(wp), allocatable :: rays(:, :), angles(:)
     real(wp) :: sides(3, 2)
-    integer :: n, farthest, i
+    integer :: n, farthest, first, i
 
     associate (place => skeleton%places(k), axis => skeleton%places(k)%axes(:, side))
       call list_rays(mechanism, skeleton, k, side, rays)
@@ -241,7 +241,8 @@ contains
       ray = unit(rays(:, farthest))
       angles = [(atan2(dot_product(cross(ray, rays(:, i)), axis), dot_product(ray, rays(:, i))), i=1, n)]
       if (maxval(angles) - minval(angles) > acos(-1.0_wp) - less_than_half) return
-      ray = unit(rays(:, maxloc(sense*angles, dim=1)))
+      first = maxloc(sense*angles, dim=1)
+      ray = unit(rays(:, first))
     end associate
   end function foremost
 
