@@ -39,7 +39,7 @@ module mech9_explanation
   use mech9_integration_words, only: explain_settings, explain_step, explain_stop
   implicit none
   private
-  public :: explain, explain_failure
+  public :: explain, explain_failure, power_of_ten
 
 contains
 

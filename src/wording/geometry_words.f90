@@ -9,13 +9,15 @@ module mech9_geometry_words
   use mech9_loop_geometry, only: oddity_type, find_oddity, none_found, bent_link, not_parallel, not_across, not_concurrent, &
                                  other_height, too_long
   use mech9_joint_words, only: link_name
-  use mech9_explanation, only: explain
+  use mech9_explanation, only: explain, power_of_ten
   implicit none
   private
   public :: explain_geometry
 
   !> Significant digits of lengths.
   integer, parameter :: digits = 6
+  !> Largest angle between axes that are meant to be parallel, where their directions have five digits or single precision [rad].
+  real(wp), parameter :: rounded_direction = 1.0e-5_wp
 
 contains
 
@@ -38,6 +40,10 @@ contains
     if (oddity%kind == none_found) return
     call explain(err)
     call describe(mechanism, oddity, words)
+    ! some messages of chains that nearly close or move tell the remedy themselves
+    if (oddity%angle > 0.0_wp .and. oddity%angle <= rounded_direction .and. index(err%message, 'data_tolerance') == 0) &
+      words = words//': so small an angle comes from directions with too few digits; give more, or allow for their error '// &
+              'with &mechanism data_tolerance='//trim(power_of_ten(oddity%angle))
     err%message = words//'; '//err%message
     if (size(oddity%odd) > 0) call add_place(err, place=mechanism%pairs(oddity%odd(1))%pair%place)
   end subroutine explain_geometry

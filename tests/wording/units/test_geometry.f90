@@ -61,6 +61,10 @@ contains
     call tester%is_true(index(message, 'the axis of pair 4 is not parallel to the other axes') == 1, 'an odd axis: '//message)
     ! the angle is atan(0.1)
     call tester%is_true(index(message, '(by 5.71 degrees)') > 0, 'by its angle')
+    call tester%is_true(index(message, 'data_tolerance') == 0, 'no rounding makes so large an angle')
+    call explain(tester, '0.9', '0,2e-8,1', exit_assembly, message)
+    ! the next power of ten
+    call tester%is_true(index(message, 'with &mechanism data_tolerance=1e-7; it does not close') > 0, 'a rounded axis: '//message)
   end subroutine odd_axis
 
   !> Nothing is said of chains that could close, or of other errors.
