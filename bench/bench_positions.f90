@@ -38,6 +38,7 @@ contains
     call time_mechanism('fig1', tree//'/examples/fig1/fig1.nml', passes, positions, closed)
     call time_mechanism('rsur', tree//'/examples/rsur/rsur.nml', passes, positions, closed)
     call time_mechanism('stewart_gough', tree//'/examples/stewart_gough/stewart_gough.nml', passes, positions/4, closed)
+    call time_mechanism('legs', tree//'/bench/data/legs_step.nml', passes, positions/4, closed)
   end subroutine run
 
   !> Median times of the closed form [us]: position, and position, velocity and acceleration.

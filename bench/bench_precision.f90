@@ -32,15 +32,17 @@ program bench_precision
     character(len=56) :: data_file
     character(len=36) :: reference     !< empty: none
     real(wp) :: end                    !< [s]
-    character(len=24) :: columns       !< of the results, in the order of the reference's columns after the time
+    character(len=72) :: columns       !< of the results, in the order of the reference's columns after the time
   end type problem_type
 
-  type(problem_type), parameter :: problems(6) = [ &
+  type(problem_type), parameter :: problems(7) = [ &
     problem_type('andrews', 'examples/andrews/andrews.nml', 'a03_andrews_ivp.csv', 0.03_wp, 'q1 q2 q3 q4 q5 q6 q7'), &
     problem_type('governor', 'examples/flyball_governor/flyball_governor.nml', 'a05_flyball.csv', 10.0_wp, 'q2'), &
     problem_type('two_windows', 'examples/n_four_bar/n_four_bar_2.nml', 'a02_nfourbar_N2.csv', 10.0_wp, 'B0.x B0.y'), &
     problem_type('forty_windows', 'examples/n_four_bar/n_four_bar_40.nml', 'a02_nfourbar_N40.csv', 10.0_wp, 'B0.x B0.y'), &
     problem_type('bricard', 'examples/bricard/bricard.nml', 'a04_bricard.csv', 9.0_wp, 'P3.x P3.y P3.z'), &
+    problem_type('legs', 'bench/data/legs_fall.nml', 'legs_fall.csv', 0.5_wp, &
+                 'left_toe.x left_toe.y left_toe.z right_toe.x right_toe.y right_toe.z'), &
     problem_type('slider_crank', 'tests/reference/dynamics_spatial_slider_crank.nml', '', 1.0_wp, 'q1 q5 q7')]
 
   !> The list of a method ends when its runs have taken this time together, since tighter tolerances would take longer

@@ -21,6 +21,7 @@ EOT
       name["fig1"] = "Fig. 1"; size["fig1"] = "6, 7"
       name["rsur"] = "spatial R-S-U-R"; size["rsur"] = "7, 7"
       name["stewart_gough"] = "Stewart-Gough platform"; size["stewart_gough"] = "14, 36"
+      name["legs"] = "pair of legs"; size["legs"] = "31, 36"
     }
     NR > 1 { printf "| %s | %s | %.3f | %.1f | %.3f | %.1f |\n", name[$1], size[$1], $2, $4, $3, $5 }
   ' "$work/positions.dat"
@@ -178,7 +179,7 @@ EOT
     BEGIN {
       name["two_links"] = "two links in the plane"; name["four_bar"] = "four-bar in the plane"; name["andrews"] = "Andrews\047 mechanism"
       name["chain"] = "open chain in space"; name["tip"] = "four-bar at the tip of a chain in space"
-      name["modules"] = "modules in series in space"
+      name["modules"] = "modules in series in space"; name["legs"] = "pair of legs"
     }
     NF < 5 { next }
     {

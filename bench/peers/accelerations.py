@@ -22,7 +22,8 @@ TREE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)
 PROBLEMS = [('two_links', 'chain', 'plane', 2), ('four_bar', 'four_bar', 'plane', 1), ('andrews', 'file', 'plane', 1),
             ('chain', 'chain', 'space', 10), ('chain', 'chain', 'space', 50), ('chain', 'chain', 'space', 200),
             ('tip', 'tip', 'space', 10), ('tip', 'tip', 'space', 50), ('tip', 'tip', 'space', 100),
-            ('modules', 'modules', 'space', 30)]
+            ('modules', 'modules', 'space', 30), ('legs', 'file', 'space', 1)]
+FILES = {'andrews': 'examples/andrews/andrews.nml', 'legs': 'bench/data/legs_fall.nml'}
 
 
 def time_of(call, quick):
@@ -107,7 +108,7 @@ def main():
             continue
         path = os.path.join(folder, 'same.nml')
         if kind == 'file':
-            path = os.path.join(TREE, 'examples', 'andrews', 'andrews.nml')
+            path = os.path.join(TREE, FILES[name])
         row = output_of(os.path.join(programs, 'bench_structures'), kind, space, n, path).split()
         mechanism = Mechanism(path, first_row(mech9d, path, folder))
         rows = []

@@ -37,7 +37,7 @@ class Run:
                       for name, link, point in (('a', pair.reference, pair.point), ('b', pair.moving, pair.moving_point))]
             kind = RevoluteJoint if pair.turns else PrismaticJoint
             self.joints[k] = plant.AddJoint(kind(f'pair{k}', *frames, pair.axis))
-        for ends in mechanism.closing_points(1 if mechanism.planar else 2):
+        for ends in mechanism.closing_points():
             # the second body must not be the world
             (first, point), (second, other) = sorted((ends[:2], ends[2:]), key=lambda end: end[0])
             plant.AddBallConstraint(body_A=body[first], p_AP=np.array(point), body_B=body[second], p_BQ=np.array(other))

@@ -1,6 +1,7 @@
 """Mechanisms of data files, as other programs are given them: links, pairs, bodies, loads, and the closed position and rates of the start.
 
-Pairs are revolute or prismatic, the systems of all links are parallel at home, and loads are torques and springs.
+Pairs are revolute or prismatic, the systems of all links are parallel at home, bodies have no products of inertia, and loads are torques
+and springs.
 """
 import math
 import os
@@ -41,6 +42,7 @@ class Mechanism:
             if name == 'pair':
                 self.pairs.append(Pair(values, numbers))
             elif name == 'body':
+                assert not any(numbers['inertia'][3:]), 'moments about the axes of links only'
                 self.bodies[int(numbers['link'][0])] = (numbers['mass'][0], numbers.get('centre', [0.0] * 3), numbers['inertia'])
             elif name == 'gravity':
                 self.gravity = numbers['acceleration']
@@ -68,11 +70,27 @@ class Mechanism:
             rest.remove(found)
         self.closing = [self.pairs[k] for k in rest]
 
-    def closing_points(self, on_axis=1):
-        """Points that meet where chains are closed, one of each pair or several on its axis: link, point, link, point."""
+    def closing_points(self):
+        """Points that meet where chains are closed, two on the axis of each pair, or one where the chain moves in a plane: link, point,
+        link, point."""
         return [(pair.reference, [p + along * a for p, a in zip(pair.point, pair.axis)],
                  pair.moving, [p + along * a for p, a in zip(pair.moving_point, pair.axis)])
-                for pair in self.closing for along in range(on_axis)]
+                for pair in self.closing for along in range(1 if self.in_plane(pair) else 2)]
+
+    def in_plane(self, closing):
+        """Whether the axes of the chain that a pair closes are those of a motion in a plane, at its start and so for ever."""
+        way = {self.pairs[k].moving: k for k in self.tree}
+        ways = []
+        for link in (closing.reference, closing.moving):
+            ways.append(set())
+            while link != 1:
+                ways[-1].add(way[link])
+                link = self.pairs[way[link]].reference
+        chain = [closing, *(self.pairs[k] for k in ways[0] ^ ways[1])]
+        # the systems of the links are parallel at home, where axes stay parallel while they turn about each other
+        normal = next(pair.axis for pair in chain if pair.turns)
+        along = [abs(sum(a * b for a, b in zip(pair.axis, normal))) for pair in chain]
+        return all(abs(cosine - pair.turns) < 1e-9 for pair, cosine in zip(chain, along))
 
     @property
     def planar(self):

@@ -29,6 +29,7 @@ PROBLEMS = {
     'two_windows': ('examples/n_four_bar/n_four_bar_2.nml', 'a02_nfourbar_N2.csv', 'B0.x B0.y', 10.0),
     'forty_windows': ('examples/n_four_bar/n_four_bar_40.nml', 'a02_nfourbar_N40.csv', 'B0.x B0.y', 10.0),
     'bricard': ('examples/bricard/bricard.nml', 'a04_bricard.csv', 'P3.x P3.y P3.z', 9.0),
+    'legs': ('bench/data/legs_fall.nml', 'legs_fall.csv', 'left_toe.x left_toe.y left_toe.z right_toe.x right_toe.y right_toe.z', 0.5),
 }
 PROGRAMS = ('exudyn_motion', 'mujoco_motion', 'drake_motion', 'pinocchio_motion', 'simbody_motion')
 # the list of a program ends when its runs have taken this time together, since finer settings would take longer still [s]

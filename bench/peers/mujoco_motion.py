@@ -20,7 +20,7 @@ class Run:
         self.mechanism, self.steps = mechanism, round(end / step)
         damped = any('damping' in spring for spring in mechanism.springs)
         self.model, self.order = model_of(
-            mujoco, mechanism, mechanism.closing_points(1 if mechanism.planar else 2), springs=True,
+            mujoco, mechanism, mechanism.closing_points(), springs=True,
             option=f'timestep="{step!r}" integrator="{"implicit" if damped else "RK4"}" tolerance="1e-12"',
             closure=f'solref="{2 * step!r} 1"')
         self.data = mujoco.MjData(self.model)

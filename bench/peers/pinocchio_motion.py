@@ -23,7 +23,7 @@ class Run:
 
     def __init__(self, mechanism, problem, end, tolerance):
         self.mechanism, self.end = mechanism, end
-        ends = mechanism.closing_points(1 if mechanism.planar else 2)
+        ends = mechanism.closing_points()
         self.made = made = Model(pin, np, mechanism, ends)
         self.closed = bool(ends)
         # the scale of time: how fast errors of closure fade, against the length of the motion

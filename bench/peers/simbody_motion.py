@@ -41,7 +41,7 @@ class Run:
             lines += [f'body {words(mass, *centre, *inertia[:3])}',
                       f'joint {int(pair.turns)} {pair.reference} {pair.moving} '
                       + words(*pair.point, *pair.moving_point, *pair.axis, mechanism.position[k], mechanism.rate[k])]
-        for reference, point, moving, moving_point in mechanism.closing_points(1 if mechanism.planar else 2):
+        for reference, point, moving, moving_point in mechanism.closing_points():
             lines.append(f'ball {reference} {words(*point)} {moving} {words(*moving_point)}')
         for spring in mechanism.springs:
             first, second = (int(link) for link in spring['links'])

@@ -59,7 +59,7 @@ def test_positions(checks, tables):
     rows = [row for row in rows if 'pylinkage' not in row[0]]
     names = [row[0] for row in rows[1:]]
     checks.equal(names, ['four-bar, closed form', 'four-bar', 'six-bar', 'Fig. 1', 'spatial R-S-U-R',
-                         'Stewart-Gough platform'], 'the mechanisms')
+                         'Stewart-Gough platform', 'pair of legs'], 'the mechanisms')
     for row in rows[1:]:
         times = float(row[2]), float(row[4])
         checks.true(0.001 < times[0] < 1e5 and 0.001 < times[1] < 1e5, f'{row[0]}: times above zero', row)
@@ -90,7 +90,7 @@ def test_accelerations_of_the_closed_form(checks, page):
 
 def test_precision(checks, tables):
     problems = problems_of(tables)
-    checks.equal(len(problems), 6, 'six problems')
+    checks.equal(len(problems), 7, 'seven problems')
     for heading in problems:
         check_precision(checks, heading, tables[heading])
 
@@ -192,7 +192,7 @@ def test_pictures(checks, folder, page):
     for picture in pictures:
         xml.parse(folder / picture)
     if checks.has('gnuplot', 'gnuplot-nox'):
-        checks.equal(len(pictures), 7, 'a picture for each problem and one of the growth')
+        checks.equal(len(pictures), 8, 'a picture for each problem and one of the growth')
 
 
 def test_unknown_option(checks):

@@ -26,6 +26,7 @@ MECHANISMS = (
     ('Jansen leg', os.path.join(TREE, 'examples', 'jansen_leg', 'jansen_leg.nml'), 1.0),
     ('class III group', os.path.join(TREE, 'examples', 'class_three_group', 'class_three_group.nml'), 1.0),
     ('Stewart-Gough platform', os.path.join(REFERENCE, 'stewart_gough_by_hand.nml'), 1.0),
+    ('pair of legs', os.path.join(TREE, 'bench', 'data', 'legs_step.nml'), 1.0),
 )
 QUANTITIES = (('positions', 'q'), ('velocities', 'dq'), ('accelerations', 'ddq'))
 

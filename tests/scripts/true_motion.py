@@ -133,8 +133,8 @@ class Mechanism:
                 q[2, k] = -amplitude * w * w * np.sin(a) / 2
         return q
 
-    def gaps(self, q):
-        """The gaps of the loops: (orders, times, 12 loops)."""
+    def poses(self, q):
+        """Series of the poses of all links in the frame, along the tree."""
         count = q.shape[2]
         home = np.zeros((ORDERS, count, 3, 3), REAL)
         home[0] = np.eye(3)
@@ -146,6 +146,11 @@ class Mechanism:
                 pose[b] = compose(pose[a], motion)
             else:
                 pose[a] = compose(pose[b], inverse(motion))
+        return pose
+
+    def gaps(self, q):
+        """The gaps of the loops: (orders, times, 12 loops)."""
+        count, pose = q.shape[2], self.poses(q)
         open_by = []
         for pair in self.loops:
             turn, shift = compose(pose[pair.links[0]], pair.pose(q[:, pair.coordinate]))
