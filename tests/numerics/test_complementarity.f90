@@ -19,6 +19,7 @@ contains
     if (test%runs('random_contacts')) call random_contacts(test)
     if (test%runs('several_in_one_corner')) call several_in_one_corner(test)
     if (test%runs('without_solution')) call without_solution(test)
+    if (test%runs('opposed_to_round_off')) call opposed_to_round_off(test)
     if (test%runs('round_off_holds')) call round_off_holds(test)
   end subroutine run
 
@@ -125,6 +126,27 @@ contains
     call test%is_true(solved, 'two contacts are driven alike')
     call test%near(z2(1) - z2(2), 1.0_wp, 1.0e-15_wp, 'the first one pushes')
   end subroutine without_solution
+
+  !> Two contacts that are driven against each other, of masses that are no whole numbers: one row is a negative multiple of the other
+  !> but for round-off, so that what elimination leaves of it is no impulse that could hold both.
+  subroutine opposed_to_round_off(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    type(random_type) :: random
+    real(wp) :: a(2, 3), z(2)
+    logical :: holds(2), solved
+    integer :: trial, i, n_solved
+
+    n_solved = 0
+    do trial = 1, 100
+      do i = 1, 3
+        a(1, i) = random%symmetric()
+      end do
+      a(2, :) = -(1.1_wp + random%symmetric())*a(1, :)
+      call solve_complementarity(2, matmul(a, transpose(a)), [-1.0_wp, -1.0_wp], [1.0e-13_wp, 1.0e-13_wp], z, holds, solved)
+      if (solved) n_solved = n_solved + 1
+    end do
+    call test%is_true(n_solved == 0, 'contacts that are driven against each other have no solution')
+  end subroutine opposed_to_round_off
 
   !> A rate within round-off is none.
   subroutine round_off_holds(test)

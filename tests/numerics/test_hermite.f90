@@ -16,6 +16,7 @@ contains
     type(tester_type), intent(inout) :: test   !< selects cases and counts their checks
 
     if (test%runs('powers_and_sine')) call powers_and_sine(test)
+    if (test%runs('many_abscissas')) call many_abscissas(test)
   end subroutine run
 
   !> The highest power that the points determine, and a sine.
@@ -50,6 +51,30 @@ contains
       end do
     end do
   end subroutine powers_and_sine
+
+  !> A power of the highest degree and its derivatives, each at many abscissas at once.
+  subroutine many_abscissas(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    integer, parameter :: degree = 3*size(nodes) - 1
+    ! round-off as for single abscissas
+    real(wp), parameter :: round_off(0:2) = [1.0e-12_wp, 1.0e-11_wp, 1.0e-10_wp]
+    type(hermite_type) :: hermite
+    real(wp) :: y(1, size(nodes)), dy(1, size(nodes)), ddy(1, size(nodes)), x(21), values(21), right(21, 0:2)
+    integer :: i, order
+
+    do i = 1, size(nodes)
+      call power(nodes(i), degree, y(1, i), dy(1, i), ddy(1, i))
+    end do
+    call build_hermite(nodes, y, dy, ddy, hermite)
+    do i = 1, size(x)
+      x(i) = 0.1_wp*(i - 11)
+      call power(x(i), degree, right(i, 0), right(i, 1), right(i, 2))
+    end do
+    do order = 0, 2
+      call hermite%first_at(x, order, values)
+      call test%near(maxval(abs(values - right(:, order))), 0.0_wp, round_off(order), 'a derivative of a power at many abscissas')
+    end do
+  end subroutine many_abscissas
 
   pure subroutine power(x, k, y, dy, ddy)
     real(wp), intent(in) :: x      !< base

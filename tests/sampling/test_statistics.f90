@@ -25,6 +25,7 @@ contains
     if (tester%runs('linear_shares')) call linear_shares(tester)
     if (tester%runs('ishigami_shares')) call ishigami_shares(tester)
     if (tester%runs('share_errors')) call share_errors(tester)
+    if (tester%runs('left_out_runs')) call left_out_runs(tester)
     if (tester%runs('unknown_shares')) call unknown_shares(tester)
   end subroutine run
 
@@ -209,6 +210,49 @@ contains
     call tester%is_true(all(abs(bias) < 0.5_wp*sqrt(errors)), 'shares have hardly any bias')
     call tester%is_true(all(sqrt(squares/errors) < 1.2_wp) .and. all(sqrt(squares/errors) > 0.6_wp), 'errors of shares')
   end subroutine share_errors
+
+  !> The share of one parameter with a straight line through few runs, from another computation: the variance by which the square of
+  !> the slope is too large comes from the slopes that are found where each run is left out in turn. It is that of the method HC3.
+  subroutine left_out_runs(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    integer, parameter :: n = 25                 ! of which ten determine each number of a straight line, and too few those of a parabola
+    type(parameter_type) :: parameters(1)
+    type(shares_type), allocatable :: shares(:)
+    real(wp) :: values(1, n), numbers(1, n), x(n), slope, rest, variance, part
+    integer :: i
+
+    parameters(1)%value = 2.0_wp
+    parameters(1)%spread = 0.1_wp
+    do i = 1, n
+      x(i) = 4.0_wp*uniform_at(7, i, 1) - 2.0_wp
+      values(1, i) = 2.0_wp + 0.1_wp*x(i)
+      numbers(1, i) = 0.5_wp*x(i) + x(i)**2 + uniform_at(7, i, 2)
+    end do
+    call find_shares(parameters, values, numbers, shares)
+    slope = slope_of(x, numbers(1, :))
+    rest = sum((numbers(1, :) - sum(numbers)/n - slope*(x - sum(x)/n))**2)/(n - 2)
+    variance = 0.0_wp
+    do i = 1, n
+      associate (others => [x(:i - 1), x(i + 1:)])
+        variance = variance + (slope_of(others, [numbers(1, :i - 1), numbers(1, i + 1:)]) - slope)**2
+      end associate
+    end do
+    part = slope**2 - variance
+    call tester%is_true(part > 0.1_wp*slope**2 .and. variance > 0.1_wp*slope**2, 'the variance matters, and leaves a share')
+    call tester%near(shares(1)%share(1), part/(part + rest), 1e-12_wp, 'the share of a slope less its variance')
+
+  contains
+
+    !> The slope of the straight line through points by least squares.
+    pure real(wp) function slope_of(x, y) result(slope)
+      real(wp), intent(in) :: x(:)   !< abscissas
+      real(wp), intent(in) :: y(:)   !< values
+
+      associate (distances => x - sum(x)/size(x))
+        slope = dot_product(distances, y)/dot_product(distances, distances)
+      end associate
+    end function slope_of
+  end subroutine left_out_runs
 
   !> Too few runs, and a quantity that does not vary, have no shares. A parameter of one value has none of the variance.
   subroutine unknown_shares(tester)
