@@ -544,7 +544,8 @@ def test_setpoint_that_ends_before_the_run(runs):
     motor = PID.format(more="proportional=1, law='segments', times=0,1, values=0,1, laws='harmonic'")
     done = run(runs.mech9d, runs.path(FLYWHEEL + motor + time(2.0)), '--no-write', folder=runs.folder)
     runs.checks.equal(done.returncode, 3, 'a setpoint that ends before the run')
-    runs.checks.true('law in segments of the motor 1 has no value after t = 1 s' in done.stderr, 'the motor is named', done.stderr)
+    runs.checks.true('law in segments of the motor 1 has no value after t = 1 s, and the run goes on to t = 2 s' in done.stderr,
+                     'the motor is named before the motion begins', done.stderr)
 
 
 def test_motors_of_coordinates_that_are_not_free(runs):

@@ -40,6 +40,7 @@ contains
     type(tester_type), intent(inout) :: tester   !< selects cases and counts their checks
 
     if (tester%runs('bodies')) call bodies(tester)
+    if (tester%runs('flat_tensors')) call flat_tensors(tester)
     if (tester%runs('starts')) call starts(tester)
     if (tester%runs('points')) call points(tester)
     if (tester%runs('axes')) call axes(tester)
@@ -86,6 +87,30 @@ contains
     call read_bodies(document, model%mechanism%structure, model%mechanism%pairs, list, diagnostics)
     call tester%is_true(diagnostics%count >= 2, 'a link that is not there, and an inertia that no body has')
   end subroutine bodies
+
+  !> Tensors of flat bodies in the planes x y, x z and y z. The second moments along both axes of the plane are 1, and the mixed one is at
+  !> most 1, where all mass lies on one line. Beyond that no body has the tensor.
+  subroutine flat_tensors(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    character(len=*), parameter :: moments(3) = ['1,1,2', '1,2,1', '2,1,1']
+    character(len=*), parameter :: products(3) = [character(len=9) :: '-one,0,0', '0,-one,0', '0,0,-one']
+    character(len=*), parameter :: sizes(2) = ['0.99', '1.01']
+    type(document_type) :: document
+    type(model_type) :: model
+    type(diagnostics_type) :: diagnostics
+    type(body_type), allocatable :: list(:)
+    integer :: plane, i, at
+
+    do plane = 1, 3
+      at = index(products(plane), 'one')
+      do i = 1, 2
+        call checked(tester, '&body link=3, mass=1, inertia='//moments(plane)//','//products(plane)(:at - 1)//sizes(i)// &
+                     trim(products(plane)(at + 3:))//' /'//eol, document, model, diagnostics)
+        call read_bodies(document, model%mechanism%structure, model%mechanism%pairs, list, diagnostics)
+        call tester%is_true(diagnostics%failed() .eqv. i == 2, 'a flat body '//products(plane)//' with '//sizes(i))
+      end do
+    end do
+  end subroutine flat_tensors
 
   !> Angles have the unit of the file, lengths are in metres.
   subroutine starts(tester)
