@@ -88,8 +88,8 @@ contains
     call tester%is_true(diagnostics%count >= 2, 'a link that is not there, and an inertia that no body has')
   end subroutine bodies
 
-  !> Tensors of flat bodies in the planes x y, x z and y z. The second moments along both axes of the plane are 1, and the mixed one is at
-  !> most 1, where all mass lies on one line. Beyond that no body has the tensor.
+  !> Tensors of flat bodies in the planes x y, x z and y z. The second moments along both axes of the plane are 1, and the mixed one
+  !> is at most 1, where all mass lies on one line. Beyond that no body has the tensor.
   subroutine flat_tensors(tester)
     type(tester_type), intent(inout) :: tester   !< counts the checks
     character(len=*), parameter :: moments(3) = ['1,1,2', '1,2,1', '2,1,1']

@@ -1,6 +1,7 @@
 !> From space to the page: scales, axes, the whole motion on the page, and the view of a plane mechanism.
 module test_projection
   use mech9_kinds, only: wp
+  use mech9_body, only: body_type
   use mech9_film, only: film_type
   use mech9_model, only: model_type
   use mech9_projection, only: projection_type
@@ -25,6 +26,7 @@ contains
 
     if (tester%runs('film')) call film_of_turn(tester)
     if (tester%runs('page')) call page(tester)
+    if (tester%runs('far_mass')) call far_mass(tester)
     if (tester%runs('nodes')) call nodes(tester)
     if (tester%runs('lists')) call lists(tester)
     if (tester%runs('texts')) call texts(tester)
@@ -74,6 +76,25 @@ contains
       call tester%is_true(all(a > 0.0_wp) .and. a(1) < projection%width .and. a(2) < projection%height, 'the slider is on the page')
     end do
   end subroutine page
+
+  !> A centre of mass far from all pairs is on the page, too, wherever the crank carries it.
+  subroutine far_mass(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    type(model_type) :: model
+    type(film_type) :: film
+    type(projection_type) :: projection
+    type(scene_type) :: scene
+    real(wp) :: at(2), depth
+    integer :: i
+
+    call take_film(tester, 12, model, film)
+    model%mechanism%bodies = [body_type(link=2, mass=1.0_wp, centre=[-10.0_wp*rod, 0.0_wp, 0.0_wp])]
+    call set_scene(model, film, projection, scene)
+    do i = 1, film%n_frames
+      call projection%on_page(film%position(i, 2, model%mechanism%bodies(1)%centre), at, depth)
+      call tester%is_true(all(at > 0.0_wp) .and. at(1) < projection%width .and. at(2) < projection%height, 'the mass is seen')
+    end do
+  end subroutine far_mass
 
   !> The places of nodes on the page are those of their links.
   subroutine nodes(tester)
