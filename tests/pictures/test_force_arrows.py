@@ -96,6 +96,11 @@ def test_arrows_in_space_are_in_balance(checks, mech9k, tmp_path, view):
     along = abs(np.array([1, 2, 0.5]) @ toward) / np.linalg.norm([1, 2, 0.5]) / np.linalg.norm(toward)
     checks.equal(arrows.shapes['load 3: torque on link 2'], 'ring' if along >= 0.25 else 'double',
                  'a moment that is seen from the side has two heads')
+    for title, heads in arrows.heads.items():
+        if arrows.is_torque(title):
+            # the barbs of the first head reach a little beyond the tip of the second one, which stands on the line of the arrow
+            (tip, barbs), (second, _) = heads
+            checks.true(np.abs(second - tip - 0.8 * (barbs - tip)).max() < 1e-3, f'{title}: the second head stands behind the first one')
 
 
 @pytest.mark.parametrize('text, options', ((PRESS, ()), (PRESS, ('--view', 'xz')), (ARM, ()), (ARM, ('--view', 'yz'))),

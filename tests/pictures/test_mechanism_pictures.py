@@ -384,20 +384,25 @@ def polygons_of(script):
             for line in re.findall(r'polygon from (\S+(?: to \S+)*)', script)]
 
 
-def words_of_gif(program, path):
-    """The call that makes a film of Fig. 1 in 21 frames."""
-    return [program, example('fig1'), '--no-write', '--animate', str(path), '--set', 'time.intervals=20']
+def words_of_gif(program, path, data=None):
+    """The call that makes a film of Fig. 1, or of another data file, in 21 frames."""
+    return [program, data or example('fig1'), '--no-write', '--animate', str(path), '--set', 'time.intervals=20']
+
+
+def frames_of_gif(checks, program, folder, data=None):
+    """What gnuplot is told to draw in each frame."""
+    script, fake = folder / 'script', folder / 'gnuplot'
+    fake.write_text(f'#!/bin/sh\n"{shutil.which("cat")}" > "{script}"\n', encoding='utf-8')
+    fake.chmod(stat.S_IRWXU)
+    done = subprocess.run(words_of_gif(program, folder / 'film.gif', data), env=dict(os.environ, PATH=str(folder)),
+                          stderr=subprocess.DEVNULL, timeout=60 * PATIENCE)
+    checks.equal(done.returncode, 8, 'a gnuplot that draws nothing')
+    return text_of(script).split('unset object; unset label\n')[1:]
 
 
 def test_script_of_a_gif(checks, mech9k, tmp_path):
     """The script for gnuplot: the frames of the whole run, one after the other, each with its own picture."""
-    script, fake = tmp_path / 'script', tmp_path / 'gnuplot'
-    fake.write_text(f'#!/bin/sh\n"{shutil.which("cat")}" > "{script}"\n', encoding='utf-8')
-    fake.chmod(stat.S_IRWXU)
-    done = subprocess.run(words_of_gif(mech9k, tmp_path / 'film.gif'), env=dict(os.environ, PATH=str(tmp_path)), stderr=subprocess.DEVNULL,
-                          timeout=60 * PATIENCE)
-    checks.equal(done.returncode, 8, 'a gnuplot that draws nothing')
-    frames = text_of(script).split('unset object; unset label\n')[1:]
+    frames = frames_of_gif(checks, mech9k, tmp_path)
     times = [float(re.search(r"set label 't = (\S+) s'", frame).group(1)) for frame in frames]
     # a clock of four digits
     checks.near(times, np.arange(21) / 20, 1e-4, 'its frames follow one another')
@@ -410,6 +415,26 @@ def test_script_of_a_gif(checks, mech9k, tmp_path):
         checks.true(any(abs(np.hypot(*(a - b)) - pixels) < PX for a in pins for b in pins), 'its scale is that of the crank', pixels)
         checks.true(all(f"set label '{axis}' at" in frame for axis in 'xy') and "set label 'z'" not in frame, 'it has its two axes')
     checks.equal(len({re.sub(r"'t = .*? s'", '', frame) for frame in frames}), 21, 'and no two are alike')
+
+
+@pytest.mark.parametrize('sense, why', ((-1, 'above a double pendulum'), (1, 'below links that stand upright')))
+def test_stand_of_a_gif(checks, mech9k, tmp_path, sense, why):
+    """The stand is on the other side of its joint than the links. Pixels of the script count downwards, as those of pages."""
+    data = tmp_path / 'two.nml'
+    data.write_text(f"""&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point=0,{sense},0 /
+&point name='P', link=3, position=0,{sense},0 /
+&drive coordinate=1, kind='polynomial', coefficients=0,0.1 /
+&drive coordinate=2, kind='polynomial', coefficients=0,0.1 /
+&time start=0, end=1, intervals=20 /
+""", encoding='utf-8')
+    for frame in frames_of_gif(checks, mech9k, tmp_path, data):
+        # the first corner is the joint, the others are its base
+        stand = next(corners for corners in polygons_of(frame) if len(corners) == 4 and np.ptp(corners[1:3, 1]) == 0.0 and np.ptp(corners[:, 1]))
+        pins = np.array([[float(x), float(y)] for x, y in re.findall(r'circle at (\S+),(\S+) size 5 ', frame)])
+        other = pins[np.argmax(np.hypot(*(pins - stand[0]).T))]
+        checks.true((stand[1, 1] - stand[0, 1]) * (other[1] - stand[0, 1]) < 0, f'a stand {why}', (stand, other))
 
 
 def test_no_gif_without_gnuplot(checks, mech9k, tmp_path):

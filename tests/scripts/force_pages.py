@@ -17,7 +17,7 @@ class Arrows:
     def __init__(self, text, force_unit=1.0, torque_unit=1.0):
         self.film, svg = film_of(text), picture_of(text)
         places = [nodes_of(self.film, frame) for frame in range(len(self.film['times']))]
-        self.feet, self.ways, self.told, self.shapes = {}, {}, {}, {}
+        self.feet, self.ways, self.told, self.shapes, self.heads = {}, {}, {}, {}, {}
         for group in svg.iter(SVG + 'g'):
             kind = group.get('class') or ''
             if kind not in STYLES:
@@ -34,6 +34,9 @@ class Arrows:
                 self.feet[title], self.ways[title] = middle, 2 * np.cross(right, up) / np.maximum(radius, 1e-12)[:, None]
             else:
                 self.feet[title], self.ways[title] = at[:, 0], at[:, 1] - at[:, 0]
+                # tip, and middle of the ends of the barbs, of one head or two
+                self.heads[title] = [(at[:, tip], 0.5 * (at[:, left] + at[:, right]))
+                                     for tip, left, right in ((1, 3, 5), (6, 7, 9))[:1 + (len(nodes) == 10)]]
             self.told[title] = float(size) * (torque_unit if self.is_torque(title) else force_unit)
         for turning in (False, True):
             names = [name for name in self.ways if self.is_torque(name) == turning]
