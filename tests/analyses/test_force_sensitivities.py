@@ -380,6 +380,9 @@ def test_hdf5_file_has_the_derivatives_of_the_table(case):
         shapes = {name: group[name].shape for name in ('drive_force', 'reaction_force', 'reaction_moment', 'coupling_force')}
         case.checks.equal(shapes, {'drive_force': (9, 1, 2), 'reaction_force': (9, 2, 3, 2), 'reaction_moment': (9, 2, 3, 2),
                                    'coupling_force': (9, 1, 2)}, 'shapes of the derivatives of forces')
+        for name in shapes:
+            unit = file[name].attrs['units']
+            case.checks.equal(group[name].attrs['units'], unit + type(unit)(' per unit of the parameter in the data file'), f'unit of {name}')
         case.checks.equal([scale[0].name for scale in group['reaction_force'].dims], ['/time', '/pair', '/axis', '/parameter'], 'their scales')
         for p, name in enumerate(('mass', 'ratio')):
             pairs = [('drive_force', (0,), 'F1'), ('coupling_force', (0,), 'C1')]
