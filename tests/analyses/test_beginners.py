@@ -203,6 +203,21 @@ def test_notes_on_drives(s, coefficients, unit, words):
     s.checks.true(words is None or words in printed, f'says {words}', printed)
 
 
+@pytest.mark.parametrize('second, stands', [
+    ('&initial coordinate=2, position=0.5 /', False), ("&drive coordinate=2, kind='polynomial', coefficients=0.5 /", True)], ids=('free', 'driven'))
+def test_drives_that_stand_beside_a_pendulum(s, second, stands):
+    """A drive that stands still is odd only where nothing else moves."""
+    printed = s.check(s.mech9d, """&structure cq=1,2 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&pair coordinate=2, links=2,3, kind='revolute', axis=0,0,1, point=1,0,0 /
+&body link=3, mass=1, centre=0.5,0,0 /
+&gravity acceleration=0,-9.81,0 /
+&drive coordinate=1, kind='polynomial', coefficients=0.3 /
+&time start=0, end=1 /
+""" + second + '\n').stdout
+    s.checks.equal('nothing moves' in printed, stands, 'the note where it is due')
+
+
 @pytest.mark.parametrize('velocity, rod, words', [
     (1, 1, None), (720, 1, 'the start of coordinate 1 has the rate 720 rad/s'), (1, 0, 'note: link 5 has no mass, while others have')])
 def test_notes_on_rates_and_masses(s, velocity, rod, words):

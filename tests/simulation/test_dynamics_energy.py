@@ -113,3 +113,22 @@ def test_name_of_the_change(checks, mech9d, name, words):
     done = run(mech9d, os.path.join(TREE, 'examples', name, name + '.nml'), '--no-write')
     checks.equal(done.returncode, 0, name)
     checks.true(f'; {words} ' in done.stderr, f'{name}: {words}', done.stderr)
+
+
+@pytest.mark.parametrize('law, words', [
+    ('', 'largest change of energy'),
+    (", law='polynomial', coefficients=1,0.5, over='q1'", 'work of loads, impacts and friction up to'),
+    (", law='polynomial', coefficients=1,0.5", 'work of loads, impacts and friction up to')], ids=('plain', 'over a coordinate', 'over time'))
+def test_name_of_the_change_by_a_spring(checks, mech9d, tmp_path, law, words):
+    """A spring whose force follows a law of time, or of a coordinate that is not its length, has no potential energy."""
+    data = tmp_path / 'spring.nml'
+    data.write_text(f"""&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&body link=2, mass=1, centre=0.5,0,0, inertia=0,0,0.1,0,0,0 /
+&initial coordinate=1, position=0.4 /
+&load kind='spring', links=1,2, position=0,1,0, second_position=0.5,0,0, stiffness=5, free_length=0.2{law} /
+&time end=1, intervals=10 /
+""", encoding='utf-8')
+    done = run(mech9d, data, '--no-write')
+    checks.equal(done.returncode, 0, law)
+    checks.true(f'; {words} ' in done.stderr, f'{law}: {words}', done.stderr)
