@@ -158,6 +158,10 @@ contains
     call tester%near(sums%result_of('integral'), (1.75_wp**4 - 1.5_wp**4)/4.0_wp - 1.5_wp*(1.75_wp**2 - 1.5_wp**2), 1.0e-14_wp, &
                      'the integral')
     call tester%near(sums%duration, 3.25_wp, 1.0e-15_wp, 'the duration')
+    ! less by 1, from -3 to 1
+    call sums%begin(-1.5_wp, (-1.5_wp)**3 + 3.5_wp)
+    call sums%add_piece(rule, -1.5_wp, 1.75_wp, t**3 - 3.0_wp*t - 1.0_wp)
+    call tester%near(sums%result_of('peak'), 3.0_wp, 1.0e-14_wp, 'the peak is the largest magnitude')
   end subroutine one_polynomial
 
   !> Over no time, means are the value at the start.

@@ -7,7 +7,7 @@ module test_planning
   use mech9_plan, only: plan_type
   use mech9_state, only: state_type
   use mech9_planning, only: make_plan
-  use mech9_sample_mechanisms, only: new_mechanism, add_revolute, frame, fig1, four_bar, general_loop
+  use mech9_sample_mechanisms, only: new_mechanism, add_revolute, add_prismatic, frame, fig1, four_bar, general_loop
   use mech9_testing, only: tester_type, message_of
   implicit none
   private
@@ -27,7 +27,29 @@ contains
     if (test%runs('too_few_inputs')) call too_few_inputs(test)
     if (test%runs('too_many_inputs')) call too_many_inputs(test)
     if (test%runs('impossible_lengths')) call impossible_lengths(test)
+    if (test%runs('size_by_slides')) call size_by_slides(test)
   end subroutine run
+
+  !> A block that slides 3 m away from its guide makes a mechanism of 3 m, to whichever side it slides.
+  subroutine size_by_slides(test)
+    type(tester_type), intent(inout) :: test   !< counts the checks
+    real(wp), parameter :: x(3) = [1.0_wp, 0.0_wp, 0.0_wp], starts(2) = [3.0_wp, -3.0_wp]
+    type(model_type) :: model
+    type(plan_type) :: plan
+    type(state_type) :: state
+    type(error_type), allocatable :: err
+    integer :: i
+
+    do i = 1, 2
+      call new_mechanism(2, reshape([1, 2], [2, 1]), [1], model)
+      call add_prismatic(model, 1, 1, 2, frame(origin, x), frame(origin, x))
+      model%problem%initial%position = starts(i:i)
+      call make_plan(model%mechanism, model%problem%partition, model%problem%initial%position, plan, state, err)
+      call test%no_error(err, 'a block that slides has a plan')
+      call test%near(plan%length, 3.0_wp, 0.0_wp, 'the size of the mechanism is the way of the block')
+      call test%near(plan%unit_of(1), 3.0_wp, 0.0_wp, 'and so is the unit of its coordinate')
+    end do
+  end subroutine size_by_slides
 
   !> Driven in its first chain, the two chains are solved one after the other.
   subroutine chains_of_fig1(test)

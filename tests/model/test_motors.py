@@ -375,9 +375,10 @@ class Controlled:
 @pytest.mark.parametrize('numbers, least, why', [
     ((200, 300, 20, 1e9, 0.3, 0.0, 1.0), 0, 'no limit'),
     ((200, 300, 20, 25, 0.3, 0.0, 1.0), 1, 'limit at the start'),
+    ((200, 300, 20, 25, -0.3, 0.0, 1.0), 1, 'lower limit at the start'),
     ((200, 300, 0, 12, 0.2, 0.3, 6.0), 8, 'PI at both limits'),
     ((300, 0, 5, 14, 0.1, 0.4, 5.0), 5, 'PD at both limits'),
-    ((300, 900, 8, 15, 0.0, 0.4, 6.0), 5, 'PID at both limits')], ids=['free', 'limit_at_the_start', 'PI', 'PD', 'PID'])
+    ((300, 900, 8, 15, 0.0, 0.4, 6.0), 5, 'PID at both limits')], ids=['free', 'limit_at_the_start', 'lower_limit', 'PI', 'PD', 'PID'])
 def test_controllers(runs, numbers, least, why):
     """PID controllers with and without limit, by several methods."""
     p, i, d, limit, mean, amplitude, omega = numbers
