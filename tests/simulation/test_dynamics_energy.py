@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import data_file
-from mech9_cases import REFERENCE, TREE, run, table_and_report, text_of
+from mech9_cases import REFERENCE, TREE, read_table, run, table_and_report, text_of
 
 # Seconds, and tolerances. The five-bar whirls through nearly singular positions of whichever coordinates it is described
 # by, some twenty of them in 10 s, each over within milliseconds; its motion is chaotic: rounding decides how near to such a
@@ -132,3 +132,23 @@ def test_name_of_the_change_by_a_spring(checks, mech9d, tmp_path, law, words):
     done = run(mech9d, data, '--no-write')
     checks.equal(done.returncode, 0, law)
     checks.true(f'; {words} ' in done.stderr, f'{law}: {words}', done.stderr)
+
+
+def test_masses_of_link_1_have_no_energy(checks, mech9d, tmp_path):
+    """Link 1 rests: a mass that is fixed to it changes no column of a pendulum, not even by a constant."""
+    tables = []
+    for mass in ('', '&body link=1, mass=5, centre=0.3,2,0, inertia=1,1,1,0,0,0 /\n'):
+        data = tmp_path / 'pendulum.nml'
+        data.write_text("""&structure cq=1 /
+&pair coordinate=1, links=1,2, kind='revolute', axis=0,0,1 /
+&initial coordinate=1, position=0.4 /
+&body link=2, mass=1, centre=0.5,0,0, inertia=0,0,0.1,0,0,0 /
+&gravity acceleration=0,-9.81,0 /
+&time end=1, intervals=10 /
+""" + mass, encoding='utf-8')
+        done = run(mech9d, data, '--quiet', '--table', tmp_path / 'pendulum.dat')
+        checks.equal(done.returncode, 0, mass)
+        tables.append(read_table(text_of(tmp_path / 'pendulum.dat')))
+    checks.true(np.abs(tables[0]['E.potential'][0] - 9.81 * 0.5 * np.sin(0.4)) < 1e-14, 'the energy of the pendulum is that of its height')
+    for name, column in tables[0].items():
+        checks.true((tables[1][name] == column).all(), f'{name}: no bit changes')
