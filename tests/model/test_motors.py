@@ -143,6 +143,13 @@ def test_spinning_up_a_flywheel(runs, inductance, ratio):
                      scale=np.abs(table['M1.torque']).max())
 
 
+def test_motor_beside_a_stop_that_is_never_met(runs):
+    """The motor works where no stop is pressed, too."""
+    motor = "&motor coordinate=1, kind='dc', voltage=24, resistance=0.6, inductance=0.05, constant=0.3 /\n"
+    table = runs.table(FLYWHEEL + motor + '&stop coordinate=1, low=-1, stiffness=100 /\n' + TIGHT + time(1.0))
+    follow_linear(table, dc_matrix(24, 0.6, 0.05, 0.3, 0.02), [0, 0, 0, 1], STATES, runs, 'a flywheel beside a stop')
+
+
 def test_linear_motor_against_a_spring(runs):
     table = runs.table(SLIDE + LINEAR_MOTOR + TIGHT + time(3.0))
     follow_linear(table, dc_matrix(10, 2, 0.1, 3, 2, 50, 1), [0, 0, 0, 1], STATES, runs, 'a linear motor against a spring')

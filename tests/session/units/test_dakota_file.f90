@@ -44,7 +44,20 @@ contains
 
     call check_form(standard)
     call check_form(aprepro)
+    call check_form(of_windows(standard))
+    call check_form(of_windows(aprepro))
   contains
+    !> The same lines with ends as Windows writes them.
+    pure function of_windows(lines) result(ended)
+      character(len=*), intent(in) :: lines(:)   !< parameters file
+      character(len=len(lines) + 1) :: ended(size(lines))
+      integer :: i
+
+      do i = 1, size(lines)
+        ended(i) = trim(lines(i))//achar(13)
+      end do
+    end function of_windows
+
     subroutine check_form(lines)
       character(len=*), intent(in) :: lines(:)   !< parameters file
       type(dakota_request_type) :: request
