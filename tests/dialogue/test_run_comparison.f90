@@ -22,6 +22,7 @@ contains
     if (tester%runs('test_thinned')) call test_thinned(tester)
     if (tester%runs('test_text')) call test_text(tester)
     if (tester%runs('test_comparison')) call test_comparison(tester)
+    if (tester%runs('test_large_mechanism')) call test_large_mechanism(tester)
     if (tester%runs('test_common_times')) call test_common_times(tester)
   end subroutine run
 
@@ -98,6 +99,22 @@ contains
                         '         0.75        2.125'//eol//'            1            3'//eol// &
                         '(the last 2 of 5 rows; 2 of 4 columns)'//eol, 'the last two rows of two columns are printed: '//eol//text)
   end subroutine test_text
+
+  !> Lengths a million times larger: the round-off of P.z is no number near zero any more, but nothing beside P.x of the same unit.
+  subroutine test_large_mechanism(tester)
+    type(tester_type), intent(inout) :: tester   !< counts the checks
+    type(kept_rows_type) :: earlier, later
+    type(comparison_type) :: comparison
+
+    earlier = new_run(10, 2.0_wp)
+    later = new_run(10, 2.5_wp)
+    earlier%rows(3, :) = 1.0e6_wp*earlier%rows(3, :)
+    earlier%rows(4, :) = 2.0e-9_wp
+    later%rows(3, :) = 1.0e6_wp*later%rows(3, :)
+    later%rows(4, :) = 2.5e-9_wp
+    call compare_runs(earlier, later, comparison)
+    call tester%is_true(size(comparison%columns) == 2 .and. comparison%alike == 1, 'round-off of large lengths does not differ')
+  end subroutine test_large_mechanism
 
   !> q1 differs by |a - b| at t = 1 s; P.x as well, a smaller share; P.z by no more than round-off.
   subroutine test_comparison(tester)
