@@ -390,7 +390,7 @@ def words_of_gif(program, path, data=None):
 
 
 def frames_of_gif(checks, program, folder, data=None):
-    """What gnuplot is told to draw in each frame."""
+    """The lines by which gnuplot draws each frame."""
     script, fake = folder / 'script', folder / 'gnuplot'
     fake.write_text(f'#!/bin/sh\n"{shutil.which("cat")}" > "{script}"\n', encoding='utf-8')
     fake.chmod(stat.S_IRWXU)
