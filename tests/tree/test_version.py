@@ -11,7 +11,8 @@ def test_version(checks, build, mech9k, mech9d):
     changes = re.search(r'^## ([0-9.]+)', text_of(os.path.join(TREE, 'CHANGELOG.md')), re.M).group(1)
     checks.equal((citation, changes, build.version), (version, version, version), 'CITATION.cff, CHANGELOG.md and the build')
     for program in (mech9k, mech9d):
-        checks.true(f' {version} ' in run(program, '--version').stdout, f'{os.path.basename(program)} --version')
+        # a commit follows where the sources are in a repository and git is there
+        checks.true(re.search(rf' {re.escape(version)}[ ,]', run(program, '--version').stdout), f'{os.path.basename(program)} --version')
     wanted = f"find_package(mech9 {'.'.join(version.split('.')[:2])} REQUIRED)"
     asking = ('docs/how-to/user-procedures.md', 'docs/how-to/library.md', 'examples/library/CMakeLists.txt',
               'examples/c/CMakeLists.txt', 'tests/user/user_project/CMakeLists.txt')
