@@ -148,6 +148,11 @@ contains
     else if (allocated(view%contact_force)) then
       deallocate (view%contact_force)
     end if
+    if (allocated(state%stretch)) then
+      view%stretch = state%stretch
+    else if (allocated(view%stretch)) then
+      deallocate (view%stretch)
+    end if
     do i = 1, plan%n_coordinates
       view%q(i) = state%q(i)
       view%dq(i) = state%dq(i)

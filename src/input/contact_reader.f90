@@ -64,6 +64,7 @@ contains
         end if
       end associate
     end do
+    mechanism%contacts%slot = [(i, i=1, size(mechanism%contacts))]
     call add_loads(mechanism%contacts, mechanism%loads)
   end subroutine read_contacts
 

@@ -1,5 +1,5 @@
-!> The time within a step at which a motor passes the limit of its force, an end of a stop is met or left, or a pair with friction comes
-!> to rest or begins to slip. The motion goes back to the start of the step and stops at that time, as at a joint of a law of time.
+!> The time within a step at which a motor passes the limit of its force, an end of a stop is met or left, a pair with friction comes to
+!> rest or begins to slip, or a ball comes to the end of a stretch of its profile. The motion goes back to the start of the step and stops at that time, as at a joint of a law of time.
 !>
 !> A coordinate comes to an end of its stop where the gap is zero; a polynomial of the fifth degree through the ends of the
 !> step shows where it may come near, also where it turns back within the step. What counts is the motion itself there.
@@ -12,6 +12,7 @@ module mech9_event_passing
   use mech9_event_search, only: locate, value_at, of_motor, of_contact, of_rate
   use mech9_value_passing, only: find_passing
   use mech9_friction_passing, only: find_friction, find_rubbing
+  use mech9_corner_passing, only: find_corner, correct_corner
   use mech9_smooth_parts, only: gap_look_type, smooth_parts_type, begin_parts
   use mech9_stop_contacts, only: gap_motion, gap_acceleration, look_at_gap
   use mech9_contact_events, only: refuse_jump
@@ -34,9 +35,9 @@ contains
   subroutine stop_at_events(motion, err)
     type(integrated_motion_type), intent(inout) :: motion   !< the motion at the end of a step
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    real(wp) :: from, times(4), y(size(motion%y))
-    integer :: motor, contact, friction, rubbing, found(4), soonest, met, slipping, i
-    logical :: motors, contacts, frictions, rubs
+    real(wp) :: from, times(5), y(size(motion%y))
+    integer :: motor, contact, friction, rubbing, corner, found(5), soonest, met, slipping, turning, i
+    logical :: motors, contacts, frictions, rubs, corners
 
     motors = motion%limits%is_needed(motion%system)
     contacts = size(motion%contacts%ends) > 0
@@ -44,29 +45,34 @@ contains
     rubs = .false.
     if (allocated(motion%system%contact)) &
       rubs = any(motion%system%contact%acts .and. motion%system%model%mechanism%contacts%static_friction > 0.0_wp)
+    corners = any(motion%contacts%ends%stretch /= 0)
     if (.not. (motors .or. contacts .or. frictions)) return
     call motion%dense_output%start_of_step(from, y)
     if (contacts) contacts = motion%contacts%any_held() .or. &
                              motion%contacts%in_doubt(motion%system%model%mechanism, motion%system%plan, motion%system%state, &
                                                       motion%t - from)
-    if (motors .or. contacts .or. frictions .or. rubs .or. motion%system%interval%contact > 0) &
+    if (motors .or. contacts .or. frictions .or. rubs .or. corners .or. motion%system%interval%contact > 0) &
       call motion%system%move_to(motion%t, motion%y, err)
     if (allocated(err)) return
     motor = 0
     contact = 0
     friction = 0
     rubbing = 0
+    corner = 0
     associate (interval => motion%system%interval)
       if (interval%is_end(motion%t)) then
         slipping = interval%friction
+        turning = interval%corner
         motors = .false.
         ! the step was judged before it was made anew up to the event
         contacts = contacts .and. .not. interval%ends_at_event()
         frictions = frictions .and. .not. interval%ends_at_event()
         rubs = rubs .and. .not. interval%ends_at_event()
+        corners = corners .and. .not. interval%ends_at_event()
         met = interval%contact
         if (met > 0) call correct_landing(motion, from, met, err)
         if (slipping > 0 .and. .not. allocated(err)) call correct_rest(motion, from, slipping, err)
+        if (turning > 0 .and. .not. allocated(err)) call correct_corner(motion, from, turning, err)
       end if
     end associate
     if (allocated(err)) return
@@ -75,19 +81,21 @@ contains
     if (contacts .and. .not. allocated(err)) call find_contact(motion, from, y, contact, times(2), err)
     if (frictions .and. .not. allocated(err)) call find_friction(motion, from, y, friction, times(3), err)
     if (rubs .and. .not. allocated(err)) call find_rubbing(motion, from, y, rubbing, times(4), err)
+    if (corners .and. .not. allocated(err)) call find_corner(motion, from, corner, times(5), err)
     if (allocated(err)) return
-    found = [motor, contact, friction, rubbing]
+    found = [motor, contact, friction, rubbing, corner]
     if (any(found > 0)) then
       soonest = minloc(abs(times - from), dim=1, mask=found > 0)
       found(:soonest - 1) = 0
       found(soonest + 1:) = 0
       call motion%step_back(times(soonest), err)
-      call motion%system%interval%end_at_event(times(soonest), found(1), found(2), found(3), found(4))
+      call motion%system%interval%end_at_event(times(soonest), found(1), found(2), found(3), found(4), found(5))
       motion%contacts%corrections = 0
     else
       if (allocated(motion%system%friction) .and. abs(motion%t - from) > 0.0_wp) call take_heat(motion, err)
       if (allocated(err)) return
-      if (motors .or. contacts .or. rubs .or. allocated(motion%system%friction)) call motion%system%move_to(motion%t, motion%y, err)
+      if (motors .or. contacts .or. rubs .or. corners .or. allocated(motion%system%friction)) &
+        call motion%system%move_to(motion%t, motion%y, err)
       if (.not. allocated(err)) call motion%note_start(err)
       do i = 1, size(motion%contacts%ends)
         if (.not. allocated(err)) call refuse_jump(motion%system, motion%contacts%ends(i), err)
@@ -119,7 +127,7 @@ contains
         corrections = corrections + 1
         change = motion%t + change
         call motion%step_back(change, err)
-        call system%interval%end_at_event(change, 0, contact, 0, 0)
+        call system%interval%end_at_event(change, 0, contact, 0, 0, 0)
       else if (gap > touching*unit .or. rate > 0.0_wp) then
         call system%interval%forget_event()
         call motion%note_start(err)
@@ -145,7 +153,7 @@ contains
       corrections = corrections + 1
       change = motion%t + change
       call motion%step_back(change, err)
-      call system%interval%end_at_event(change, 0, 0, friction, 0)
+      call system%interval%end_at_event(change, 0, 0, friction, 0, 0)
     end associate
   end subroutine correct_rest
 

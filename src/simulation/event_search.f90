@@ -9,18 +9,23 @@ module mech9_event_search
   use mech9_motion_view, only: link_motion_type
   use mech9_contact, only: contact_place_type
   use mech9_contact_motion, only: place_of_contact, acceleration_of_contact
-  use mech9_stop_contacts, only: gap_motion
+  use mech9_stop_contacts, only: gap_motion, look_at_gap
+  use mech9_smooth_parts, only: gap_look_type
   use mech9_integrated_motion, only: integrated_motion_type
   implicit none
   private
   public :: locate, value_at, of_motor, of_contact, of_rate, of_friction, of_paradox, of_rubbing, of_turn, of_rubbing_turn, &
-    slip_acceleration
+    of_corner, slip_acceleration, way_beyond
 
   !> Values that are zero at a time that is searched: the excess of a motor, the passing of an end of a stop, the rate of its coordinate,
   !> how far a pair with friction is beyond its present mode, minus the determinant of frictions, how far the friction of a contact of
-  !> links is beyond its present mode, and the acceleration of a pair and of a contact that slip, along the slip.
+  !> links is beyond its present mode, the acceleration of a pair and of a contact that slip, along the slip, and the way of a ball beyond the
+  !> end of a stretch of its profile.
   integer, parameter :: of_motor = 1, of_contact = 2, of_rate = 3, of_friction = 4, of_paradox = 5, of_rubbing = 6, of_turn = 7, &
-                        of_rubbing_turn = 8
+                        of_rubbing_turn = 8, of_corner = 9
+  !> The end of a stretch is passed by this part of the mechanism's length, or by the way in some spacings of the time: more than round-off.
+  real(wp), parameter :: beyond_stretch = 1.0e-12_wp
+  real(wp), parameter :: spacings_beyond = 64.0_wp
   !> Trials of the search for a time.
   integer, parameter :: most_trials = 100
 
@@ -64,7 +69,7 @@ contains
     real(wp), intent(in) :: t                               !< time within the last step [s]
     real(wp), intent(out) :: value                          !< of a motor in parts of its limit
     type(error_type), allocatable, intent(out) :: err       !< allocated if it failed
-    real(wp) :: from, y(size(motion%y)), gap(2)
+    real(wp) :: from, y(size(motion%y)), gap(2), margin
     logical :: found
 
     call motion%dense_output%start_of_step(from, y)
@@ -94,6 +99,8 @@ contains
       value = slip_acceleration(motion, of_friction, i)
     case (of_rubbing_turn)
       value = slip_acceleration(motion, of_rubbing, i)
+    case (of_corner)
+      call way_beyond(motion, i, value, margin)
     case default
       gap = gap_motion(motion%system%model%mechanism, motion%system%plan, motion%system%state, motion%contacts%ends(i))
       value = gap(2)
@@ -124,6 +131,21 @@ contains
       end if
     end associate
   end function passing_of_contact
+
+  !> How far the ball of a contact is beyond the end of the stretch of its profile and a margin, in the state of the system.
+  pure subroutine way_beyond(motion, i, value, margin)
+    type(integrated_motion_type), intent(in) :: motion   !< the motion
+    integer, intent(in) :: i                             !< number of the end of this contact, which has a stretch
+    real(wp), intent(out) :: value                       !< the way beyond both [m]
+    real(wp), intent(out) :: margin                      !< the margin [m]
+    type(gap_look_type) :: look
+
+    associate (system => motion%system)
+      look = look_at_gap(system%model%mechanism, system%plan, system%state, motion%contacts%ends(i))
+      margin = max(beyond_stretch*system%plan%length, spacings_beyond*spacing(system%state%t)*look%place%passing_speed)
+      value = look%place%past - margin
+    end associate
+  end subroutine way_beyond
 
   !> How far the friction of a contact of links is beyond its present mode, in the state of the system: above zero where it should act otherwise.
   pure real(wp) function passing_of_rubbing(motion, i) result(value)

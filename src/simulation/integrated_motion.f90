@@ -321,9 +321,10 @@ contains
     class(impact_watcher_type), allocatable, intent(inout) :: impacts   !< gets the impulses of pairs; not allocated: they are not recorded
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
     real(wp) :: of_held(self%system%plan%n_coordinates)
-    integer :: met, motor, friction, rubbing
+    integer :: met, motor, friction, rubbing, corner
 
     met = self%system%interval%contact
+    corner = self%system%interval%corner
     friction = self%system%interval%friction
     rubbing = self%system%interval%rubbing
     of_held = 0.0_wp
@@ -335,7 +336,8 @@ contains
       call self%system%interval%forget_event()
       self%system%interval%motor = motor
     end if
-    if (met > 0 .or. rubbing > 0 .or. self%contacts%any_held() .or. allocated(self%system%friction)) then
+    self%system%interval%corner = corner
+    if (met > 0 .or. rubbing > 0 .or. corner > 0 .or. self%contacts%any_held() .or. allocated(self%system%friction)) then
       call self%meet_events(met, friction, rubbing, of_held, .false., events, impacts, err)
     else
       call self%restart((self%t), (self%y), err)
@@ -367,6 +369,7 @@ contains
     if (.not. allocated(err)) call self%begin_passage(met, friction, of_held, released, err)
     if (allocated(self%passage) .and. rubbing > 0 .and. .not. allocated(err)) call meet_rubbing(self%passage, self%system, &
       self%contacts%ends(findloc(self%contacts%ends%contact, rubbing, dim=1)), err)
+    if (self%system%interval%corner > 0 .and. .not. allocated(err)) call turn_corner(self, err)
     if (allocated(err)) return
     prior = self%contacts
     call meet_contacts(self%system, met, rubbing, of_held, self%contacts, impulses, changes, impact, holds_change, events, err)
@@ -399,6 +402,20 @@ contains
       call self%passage%check_start(self%system, self%contacts%ends, err)
     if (.not. allocated(err)) call end_passage(self%passage, at_start, events)
   end subroutine meet_events
+
+  !> Let the contact whose ball came to the end of a stretch of its profile go on with the next one.
+  subroutine turn_corner(self, err)
+    class(integrated_motion_type), intent(inout) :: self   !< the motion, whose system stands before the event
+    type(error_type), allocatable, intent(inout) :: err    !< not allocated; then allocated if it failed
+
+    associate (corner => self%system%interval%corner, system => self%system)
+      if (allocated(self%passage)) call self%passage%meet_corner(system, self%contacts%ends(corner), err)
+      if (allocated(err)) return
+      call self%contacts%pass_end_of_stretch(corner, system%model%mechanism, system%plan, system%state)
+      corner = 0
+    end associate
+    call self%system%move_to(self%t, self%y, err)
+  end subroutine turn_corner
 
   !> Begin with the derivatives at an event, if any are integrated. Before an impact the coordinates that stops and frictions hold are
   !> released, since they take part in it.

@@ -25,6 +25,9 @@ module mech9_profile
     procedure :: prepare
     procedure :: foot
     procedure :: neighbours
+    procedure :: is_divided
+    procedure :: stretch_of
+    procedure :: next_stretch
     procedure :: normal_at_end
     procedure :: stands_out
     procedure :: trace
@@ -38,6 +41,8 @@ module mech9_profile
     real(wp) :: turning = 0.0_wp     !< rate of the normal along the tangent per velocity of the point along it [1/m]
     real(wp) :: turning_slope = 0.0_wp   !< derivative of `turning` by the way of the point along the tangent [1/m^2]
     integer :: part = 0              !< number of its part among those of all pieces; negative: minus the number of the corner or end
+    real(wp) :: past = 0.0_wp        !< how far the point is past the nearest end of the stretch that was asked for; negative: before it [m]
+    real(wp) :: past_slope(2) = 0.0_wp   !< derivative of `past` by the point
   end type foot_type
 
   !> Sine of the angle up to which two pieces that meet are one smooth curve: a tangent through few points errs by so much.
@@ -70,18 +75,27 @@ contains
     end do
   end subroutine prepare
 
-  !> The nearest foot of a point.
-  pure function foot(self, point)
-    class(profile_type), intent(in) :: self   !< prepared
-    real(wp), intent(in) :: point(2)          !< in the plane of the profile [m]
-    type(foot_type) :: foot
+  !> The nearest foot of a point, or that on one stretch.
+  pure function foot(self, point, stretch)
+    class(profile_type), intent(in) :: self      !< prepared
+    real(wp), intent(in) :: point(2)             !< in the plane of the profile [m]
+    integer, intent(in), optional :: stretch     !< number of a piece, or minus that of a corner or an end; 0 or absent: the nearest foot
+    type(foot_type) :: foot, within
     real(wp) :: distances(size(self%reach)), nearest, bound, u, distance
-    integer :: i, piece, part, number
+    integer :: i, piece, part, number, only
 
+    only = 0
+    if (present(stretch)) only = stretch
+    if (only < 0) then
+      foot = foot_on_corner(self, -only, point)
+      foot%part = only
+      call find_past_corner(self, -only, point, foot)
+      return
+    end if
     do i = 1, size(distances)
       distances(i) = hypot(point(1) - self%middle(1, i), point(2) - self%middle(2, i))
     end do
-    bound = minval(distances)
+    bound = minval(distances, mask=only == 0 .or. self%of_piece == only)
     nearest = huge(1.0_wp)
     piece = 0
     part = 0
@@ -89,11 +103,17 @@ contains
     u = 0.0_wp
     do i = 1, size(distances)
       if (distances(i) - self%reach(i) > bound) cycle
+      if (only > 0 .and. self%of_piece(i) /= only) cycle
       distance = nearest
       call search_part(self%pieces(self%of_piece(i)), self%of_piece(i), self%of_part(i), point, nearest, piece, part, u)
       if (nearest < distance) number = i
       bound = min(bound, nearest)
     end do
+    if (only > 0) then
+      if (number > 0) within = foot_on_piece(self, self%pieces(piece), part, u, point)
+      call find_on_piece(self, only, point, within, number, nearest, foot)
+      return
+    end if
     call search_corners(self, point, nearest, i, distance)
     if (i > 0) then
       foot = foot_on_corner(self, i, point)
@@ -103,6 +123,169 @@ contains
       foot%part = number
     end if
   end function foot
+
+  !> Whether the profile has several stretches.
+  pure logical function is_divided(self)
+    class(profile_type), intent(in) :: self   !< prepared
+
+    is_divided = .not. (self%closed .and. size(self%pieces) == 1)
+    if (.not. is_divided) is_divided = .not. self%pieces(1)%closed
+  end function is_divided
+
+  !> The stretch of a part: number of a piece, or minus that of a corner or an end.
+  pure integer function stretch_of(self, part)
+    class(profile_type), intent(in) :: self   !< prepared
+    integer, intent(in) :: part               !< `part` of a foot
+
+    stretch_of = part
+    if (part > 0) stretch_of = self%of_piece(part)
+  end function stretch_of
+
+  !> The stretch that follows where a point goes past the end of one. A corner that does not stand out there is passed by.
+  pure integer function next_stretch(self, stretch, point)
+    class(profile_type), intent(in) :: self   !< prepared
+    integer, intent(in) :: stretch            !< on which the point was
+    real(wp), intent(in) :: point(2)          !< past its end, in the plane of the profile [m]
+    integer :: corner, piece
+    logical :: ahead
+
+    if (stretch < 0) then
+      ahead = way_into(self, -stretch, .true., point) > way_into(self, -stretch, .false., point)
+      next_stretch = piece_beside(self, -stretch, ahead)
+      return
+    end if
+    ahead = ends_nearer(self, stretch, point)
+    corner = stretch + merge(1, 0, ahead)
+    if (corner > size(self%pieces) .and. self%closed) corner = 1
+    next_stretch = -corner
+    piece = piece_beside(self, corner, ahead)
+    if (way_into(self, corner, ahead, point) > 0.0_wp) next_stretch = piece
+  end function next_stretch
+
+  !> Whether a point is nearer to the end of a piece than to its beginning. Where both are one corner, the normals tell.
+  pure logical function ends_nearer(self, piece, point)
+    type(profile_type), intent(in) :: self   !< the profile
+    integer, intent(in) :: piece             !< number of the piece
+    real(wp), intent(in) :: point(2)         !< in the plane of the profile [m]
+    real(wp), dimension(2) :: from_beginning, from_end
+
+    from_beginning = point - end_point(self, piece)
+    from_end = point - end_point(self, piece + 1)
+    if (self%closed .and. size(self%pieces) == 1) then
+      ends_nearer = dot_product(from_end, self%normal_at_end(piece, .true.)) > &
+                    dot_product(from_beginning, self%normal_at_end(piece, .false.))
+    else
+      ends_nearer = norm2(from_end) < norm2(from_beginning)
+    end if
+  end function ends_nearer
+
+  !> The piece that begins in a corner or an end, or the one that ends there; 0: there is none.
+  pure integer function piece_beside(self, corner, ahead) result(piece)
+    type(profile_type), intent(in) :: self   !< the profile
+    integer, intent(in) :: corner            !< its number
+    logical, intent(in) :: ahead             !< the piece that begins there is asked for
+
+    piece = corner - merge(0, 1, ahead)
+    if (piece > size(self%pieces)) piece = 0
+    if (piece == 0 .and. self%closed) piece = size(self%pieces)
+  end function piece_beside
+
+  !> The direction in which a point leaves a piece at one of its ends.
+  pure function way_out(self, piece, at_end)
+    type(profile_type), intent(in) :: self   !< the profile
+    integer, intent(in) :: piece             !< number of the piece
+    logical, intent(in) :: at_end            !< at its end, and at its beginning otherwise
+    real(wp) :: way_out(2), normal(2)
+
+    normal = self%normal_at_end(piece, at_end)
+    way_out = merge(1.0_wp, -1.0_wp, at_end)*self%side*[normal(2), -normal(1)]
+  end function way_out
+
+  !> How far a point at a corner is within a piece beside it; far outside where there is no piece [m].
+  pure real(wp) function way_into(self, corner, ahead, point)
+    type(profile_type), intent(in) :: self   !< the profile
+    integer, intent(in) :: corner            !< its number
+    logical, intent(in) :: ahead             !< the piece begins there, and ends there otherwise
+    real(wp), intent(in) :: point(2)         !< in the plane of the profile [m]
+    integer :: piece
+
+    way_into = -huge(1.0_wp)
+    piece = piece_beside(self, corner, ahead)
+    if (piece > 0) way_into = -dot_product(point - end_point(self, corner), way_out(self, piece, .not. ahead))
+  end function way_into
+
+  !> Find how far a point at a corner is past it: within one of the pieces beside it.
+  pure subroutine find_past_corner(self, corner, point, foot)
+    type(profile_type), intent(in) :: self     !< the profile
+    integer, intent(in) :: corner              !< its number
+    real(wp), intent(in) :: point(2)           !< in the plane of the profile [m]
+    type(foot_type), intent(inout) :: foot     !< gets the way past it
+    logical :: ahead
+
+    ahead = way_into(self, corner, .true., point) > way_into(self, corner, .false., point)
+    foot%past = way_into(self, corner, ahead, point)
+    foot%past_slope = -way_out(self, piece_beside(self, corner, ahead), .not. ahead)
+  end subroutine find_past_corner
+
+  !> The foot on a given piece, or beyond its nearer end.
+  pure subroutine find_on_piece(self, piece, point, within, number, nearest, foot)
+    type(profile_type), intent(in) :: self     !< the profile
+    integer, intent(in) :: piece               !< number of the piece
+    real(wp), intent(in) :: point(2)           !< in the plane of the profile [m]
+    type(foot_type), intent(in) :: within      !< nearest foot within the piece
+    integer, intent(in) :: number              !< of its part; 0: there is none
+    real(wp), intent(in) :: nearest            !< distance of the point from it [m]
+    type(foot_type), intent(out) :: foot       !< the foot
+    real(wp) :: out(2), from_end(2), way
+    logical :: at_end
+
+    at_end = ends_nearer(self, piece, point)
+    out = way_out(self, piece, at_end)
+    from_end = point - end_point(self, piece + merge(1, 0, at_end))
+    way = dot_product(from_end, out)
+    if (number > 0 .and. nearest <= norm2(from_end)) then
+      foot = within
+      foot%part = number
+      foot%past = -abs(way)
+      foot%past_slope = -sign(1.0_wp, way)*out
+    else
+      foot = foot_beyond(self, piece, at_end, from_end)
+      foot%part = merge(findloc(self%of_piece, piece, dim=1, back=.true.), findloc(self%of_piece, piece, dim=1), at_end)
+      foot%past = way
+      foot%past_slope = out
+    end if
+  end subroutine find_on_piece
+
+  !> The foot on the circle, or the line, as which a piece goes on beyond one of its ends. With the curvature k, and the ways x along it and
+  !> y across, its distance is (2 y - k (x^2 + y^2))/(1 + w), w^2 = (k x)^2 + (1 - k y)^2.
+  pure function foot_beyond(self, piece, at_end, from_end) result(foot)
+    type(profile_type), intent(in) :: self   !< the profile
+    integer, intent(in) :: piece             !< number of the piece
+    logical, intent(in) :: at_end            !< beyond its end, and before its beginning otherwise
+    real(wp), intent(in) :: from_end(2)      !< from this end to the point, in the plane of the profile [m]
+    type(foot_type) :: foot
+    real(wp), dimension(3) :: at, first, second, third
+    real(wp) :: normal(2), tangent(2), curvature, x, y, w
+    integer :: k
+
+    associate (curve => self%pieces(piece))
+      k = merge(size(curve%piece), 1, at_end)
+      call curve%spline%evaluate(curve%piece(k), curve%u(merge(k, 0, at_end)), at, first, second, third)
+    end associate
+    normal = self%normal_at_end(piece, at_end)
+    tangent = [normal(2), -normal(1)]
+    curvature = dot_product(second(:2), normal)/norm2(first(:2))**2
+    x = dot_product(from_end, tangent)
+    y = dot_product(from_end, normal)
+    w = hypot(curvature*x, 1.0_wp - curvature*y)
+    foot%distance = (2.0_wp*y - curvature*(x**2 + y**2))/(1.0_wp + w)
+    foot%normal = normal
+    if (w > 0.0_wp) then
+      foot%normal = ((1.0_wp - curvature*y)*normal - curvature*x*tangent)/w
+      foot%turning = -curvature/w
+    end if
+    foot%tangent = [foot%normal(2), -foot%normal(1)]
+  end function foot_beyond
 
   !> Whether two feet are on the same corner, or on one part or two of a smooth piece that follow each other.
   pure logical function neighbours(self, first, second)

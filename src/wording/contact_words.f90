@@ -3,7 +3,7 @@ module mech9_contact_words
   use mech9_length_words, only: length_in_words
   use mech9_text, only: to_text
   use mech9_failure, only: failure_type
-  use mech9_integration_failures, only: failure_contact_paradox, failure_cornered_contact, failure_shared_contact
+  use mech9_integration_failures, only: failure_contact_paradox, failure_shared_contact
   use mech9_event_failures, only: failure_contact_start, failure_contact_violated, failure_undecided_contact, &
     failure_contact_behind
   use mech9_driven_failures, only: failure_contact_passed
@@ -52,10 +52,6 @@ contains
       text = 'derivatives by the parameters are not computed at t = '//to_text(failure%t, 10)//' s, where equilibrium does not '// &
              'determine the forces of closed contacts, among them contact '//to_text(failure%number)//'. Leave out reactions '// &
              'and drive forces if contacts have no friction, or give fewer contacts, or leave out sensitivities and gradients'
-    case (failure_cornered_contact)
-      text = 'derivatives by the parameters are not computed at t = '//to_text(failure%t, 10)//' s, where contact '// &
-             to_text(failure%number)//' stays closed on a path with corners, or at its end. Give a path without corners '// &
-             'on that side, end the run before, or leave out sensitivities and gradients'
     end select
   end subroutine explain_contact_failure
 end module mech9_contact_words

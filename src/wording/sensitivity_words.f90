@@ -8,7 +8,7 @@ module mech9_sensitivity_words
   use mech9_integration_failures, only: failure_jump_sensitivity, failure_angles_sensitivity
   use mech9_event_failures, only: failure_event_sensitivity, cause_grazing, cause_several_impacts, cause_start_on_stop, &
     cause_drive_jumps, cause_breaks_loose, cause_held_hit, cause_contact_loose, &
-    cause_contact_rest, cause_rubbing_impact, cause_slip_at_rest
+    cause_contact_rest, cause_rubbing_impact, cause_slip_at_rest, cause_corner_rest
   use mech9_simulation_failures, only: failure_friction_sensitivity
   use mech9_reaction_failures, only: failure_shared_force
   use mech9_block_names, only: chain_names
@@ -87,6 +87,8 @@ contains
       text = place//' is hit, and its friction just stops the slip'
     case (cause_slip_at_rest)
       text = place//' begins to act without a slip, and parameters change its slip'
+    case (cause_corner_rest)
+      text = 'the ball of '//place//' comes to rest at a corner or an end of its path'
     case (cause_drive_jumps)
       text = 'the rate of a drive jumps while a stop or friction holds a coordinate'
     case (cause_breaks_loose)

@@ -482,12 +482,6 @@ def free_cases():
                                 start=initial(1, 0.0, ', velocity=1')), ('--set', 'gravity.acceleration=0,0,0'), INTEGRATOR,
          ['the motion makes no progress beyond t = 1000000 s: it has had ', ' events at stops, frictions and contacts. Give a smaller '
           "restitution, a compliant stop or contact by stiffness=, or friction by law='smooth'"]),
-        ('cornered_contact', SLIDING_POINT.replace(
-            "&contact point='P' /", "&contact point='P', kind='path', file='path.dat', side='left', axis=0,1,0, zero=0,0,1, radius=0.1 /")
-         + "&gravity acceleration=0,0,-9.81 /\n&parameter name='m', sets='body(1).mass' /\n&output sensitivities=.true. /\n",
-         {'path.dat': '0.5 1\n0.5 -1\n\n0.2 -2\n'}, DATA,
-         ['derivatives by the parameters are not computed at t = ', ' s, where contact 1 stays closed on a path with corners, or at its '
-          'end. Give a path without corners on that side, end the run before, or leave out sensitivities and gradients']),
         ('shared_contact', TWO_FEET, (), DATA,
          ['derivatives by the parameters are not computed at t = 0 s, where equilibrium does not determine the forces of closed contacts, '
           'among them contact 1. Leave out reactions and drive forces if contacts have no friction, or give fewer contacts']),

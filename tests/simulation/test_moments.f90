@@ -169,9 +169,9 @@ contains
     call test%near(interval%time_inside(1.0_wp), 1.0_wp, 1.0e-9_wp, 'close to its end')
     call test%near(interval%time_inside(0.7_wp), 0.7_wp, 0.0_wp, 'times within stay')
     call test%is_true(interval%is_end(1.0_wp) .and. .not. interval%is_end(0.9_wp), 'it is known where it ends')
-    call interval%end_at_event(0.7_wp, 0, 1, 0, 0)
+    call interval%end_at_event(0.7_wp, 0, 1, 0, 0, 0)
     call test%near(interval%time_inside(0.7_wp), 0.7_wp, 0.0_wp, 'the time of an event stays, where laws are smooth')
-    call interval%end_at_event(1.0_wp, 0, 1, 0, 0)
+    call interval%end_at_event(1.0_wp, 0, 1, 0, 0, 0)
     call test%is_true(interval%time_inside(1.0_wp) < 1.0_wp, 'but at a joint it lies inside')
     call interval%begin(model, 2.5_wp)
     call test%is_true(interval%ahead >= huge(1.0_wp), 'after the last joint none comes')
@@ -206,7 +206,7 @@ contains
     call interval%begin(model, 0.0_wp)
     call test%is_true(.not. interval%ends, 'there is no joint')
     call test%near(interval%time_inside(0.0_wp), 0.0_wp, 0.0_wp, 'all times stay')
-    call interval%end_at_event(1.5_wp, 2, 0, 0, 0)
+    call interval%end_at_event(1.5_wp, 2, 0, 0, 0, 0)
     call test%is_true(interval%is_end(1.5_wp) .and. interval%motor == 2, 'it ends where a motor passes its limit')
   end subroutine motor_limit
 

@@ -28,6 +28,7 @@ contains
     if (allocated(present%pressed)) state%pressed = present%pressed
     if (allocated(present%friction)) state%friction = present%friction
     if (allocated(present%contact_force)) state%contact_force = present%contact_force
+    if (allocated(present%stretch)) state%stretch = present%stretch
     call place_all(plan, state, err)
     if (allocated(err)) return
     call spread_all_velocities(plan, state)

@@ -258,12 +258,15 @@ contains
     real(wp), intent(in) :: forces(:, :)                !< (3,contacts) derivatives by one parameter, fixed axes [N]
     type(varied_forces_type), intent(inout) :: self     !< with the motion as loads read it; its sums grow
     type(contact_place_type) :: place
+    integer :: stretch(size(forces, 2))
     integer :: i, side
 
+    stretch = 0
+    if (allocated(self%view%stretch)) stretch = self%view%stretch
     do i = 1, size(forces, 2)
       if (.not. any(abs(forces(:, i)) > 0.0_wp)) cycle
       associate (contact => model%mechanism%contacts(i), links => self%view%links, sum => self%sum_change)
-        place = contact%find_place(links(contact%links(1)), links(contact%links(2)))
+        place = contact%find_place(links(contact%links(1)), links(contact%links(2)), stretch(i))
         do side = 1, 2
           associate (k => contact%links(side), force => (3 - 2*side)*forces(:, i))
             sum%force(:, k) = sum%force(:, k) + force

@@ -33,6 +33,8 @@ module mech9_state
     real(wp), allocatable :: friction(:)         !< forces of frictions on their coordinates; not allocated: they are not known [N m, N]
     real(wp), allocatable :: heat(:)             !< energy that each friction has taken; not allocated: no pair has friction [J]
     real(wp), allocatable :: contact_force(:, :) !< (3,contacts) forces on their balls, fixed axes; not allocated: not known [N]
+    integer, allocatable :: stretch(:)           !< (contacts) stretch of its profile on which a contact stays; 0: the nearest foot
+                                                 !< counts; not allocated: it does for all
     real(wp), allocatable :: curve(:, :)         !< (0:2,couplings) functions of couplings and their derivatives; not allocated:
                                                  !< all couplings are linear
     real(wp), allocatable :: angle(:)            !< (M) angle by which each step turns [rad]

@@ -26,6 +26,7 @@ module mech9_contact
   type :: contact_type
     type(place_type) :: place                    !< place of its group in the data file
     integer :: number = 0                        !< of its group; sides of one profile that a corner parts have the same number
+    integer :: slot = 0                          !< its place among all contacts of the mechanism
     integer :: links(2) = 0                      !< numbers of the link of the ball, and of that of the surface
     real(wp) :: center(3) = 0.0_wp               !< of the ball, in the system of its link [m]
     real(wp) :: radius = 0.0_wp                  !< of the ball; 0: a point [m]
@@ -46,6 +47,7 @@ module mech9_contact
   contains
     procedure :: has_friction
     procedure :: find_place
+    procedure :: centre_in_plane
     procedure :: is_smooth_between
     procedure :: acceleration
     procedure :: normal_force
@@ -63,6 +65,8 @@ module mech9_contact
     real(wp) :: speed = 0.0_wp          !< sum of the speeds from which this velocity comes [m/s]
     real(wp) :: passing_speed = 0.0_wp  !< speed of the ball's centre as seen from the surface's link, along the plane of a profile [m/s]
     integer :: part = 0                 !< of a profile: the part with the nearest point, see foot_type; 0: a smooth surface
+    real(wp) :: past = 0.0_wp           !< how far the centre is past the end of a given stretch of a profile [m]
+    real(wp) :: past_rate = 0.0_wp      !< its derivative in time [m/s]
   contains
     procedure :: gap_rate
     procedure :: tangents
@@ -78,10 +82,11 @@ contains
   end function has_friction
 
   !> The place of the contact in a motion of its links.
-  pure function find_place(self, ball, surface) result(place)
+  pure function find_place(self, ball, surface, stretch) result(place)
     class(contact_type), intent(in) :: self        !< the contact
     type(link_motion_type), intent(in) :: ball     !< motion of the ball's link
     type(link_motion_type), intent(in) :: surface  !< motion of the surface's link
+    integer, intent(in), optional :: stretch       !< of a profile, on which the foot is; 0 or absent: the nearest foot counts
     type(contact_place_type) :: place
     real(wp) :: d(3), v(3), v_origin(3), spin(3), carried(3), length
 
@@ -93,7 +98,7 @@ contains
       place%gap = dot_product(place%normal, d) - self%radius
       place%normal_rate = cross(surface%omega, place%normal)
     case (profile_surface)
-      call find_foot(self, d, v - surface%point_velocity(self%origin) - cross(surface%omega, d), surface, place)
+      call find_foot(self, d, v - surface%point_velocity(self%origin) - cross(surface%omega, d), surface, place, stretch)
     case default
       length = norm2(d)
       if (length > 0.0_wp) place%normal = d/length
@@ -109,21 +114,35 @@ contains
     place%speed = norm2(v) + norm2(spin) + norm2(carried)
   end function find_place
 
+  !> The centre of the ball in the plane of the profile, from its origin [m].
+  pure function centre_in_plane(self, ball, surface) result(centre)
+    class(contact_type), intent(in) :: self        !< a contact with a profile
+    type(link_motion_type), intent(in) :: ball     !< motion of the ball's link
+    type(link_motion_type), intent(in) :: surface  !< motion of the surface's link
+    real(wp) :: centre(2), point(3)
+
+    point = turn_back(self%axes, turn_back(surface%r, ball%point_position(self%center) - surface%point_position(self%origin)))
+    centre = point(:2)
+  end function centre_in_plane
+
   !> Find gap and normal of a profile.
-  pure subroutine find_foot(self, d, v, surface, place)
+  pure subroutine find_foot(self, d, v, surface, place, stretch)
     class(contact_type), intent(in) :: self               !< the contact
     real(wp), intent(in) :: d(3)                          !< from the profile's origin to the centre of the ball, fixed axes [m]
     real(wp), intent(in) :: v(3)                          !< velocity of this centre as seen from the surface, fixed axes [m/s]
     type(link_motion_type), intent(in) :: surface         !< motion of the surface's link
     type(contact_place_type), intent(inout) :: place      !< gets gap, normal and rate of the normal
+    integer, intent(in), optional :: stretch              !< on which the foot is; 0 or absent: the nearest foot counts
     type(foot_type) :: foot
     real(wp) :: point(3), tangent(3), flat(3)
 
     point = turn_back(self%axes, turn_back(surface%r, d))
     flat = turn_back(self%axes, turn_back(surface%r, v))
     place%passing_speed = norm2(flat(:2))
-    foot = self%profile%foot(point(:2))
+    foot = self%profile%foot(point(:2), stretch)
     place%part = foot%part
+    place%past = foot%past
+    place%past_rate = dot_product(foot%past_slope, flat(:2))
     place%gap = foot%distance - self%radius
     if (is_hidden(self, foot, point(:2))) place%gap = -foot%distance
     place%normal = surface%fixed_components(turn(self%axes, [foot%normal, 0.0_wp]))

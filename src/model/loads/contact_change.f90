@@ -19,6 +19,7 @@ module mech9_contact_change
   type :: gap_shape_type
     real(wp) :: normal(3) = 0.0_wp        !< first derivative of the gap
     real(wp) :: bending(3, 3) = 0.0_wp    !< second derivative [1/m]
+    real(wp) :: past_slope(3) = 0.0_wp    !< derivative of the way past the end of a given stretch of a profile
     real(wp), private :: tangent(3) = 0.0_wp   !< along a profile
     real(wp), private :: turning = 0.0_wp      !< of the normal of a profile, per way of the ball along the tangent [1/m]
     real(wp), private :: slope = 0.0_wp        !< derivative of `turning` along the tangent [1/m^2]
@@ -55,9 +56,10 @@ contains
   end function numbers_of_contact
 
   !> The gap near a place of the ball's centre.
-  pure function find_gap_shape(contact, x) result(shape)
+  pure function find_gap_shape(contact, x, stretch) result(shape)
     type(contact_type), intent(in) :: contact   !< the contact
     real(wp), intent(in) :: x(3)                !< the centre from `origin` of the surface, in the axes of its link [m]
+    integer, intent(in), optional :: stretch    !< of a profile, on which the foot is; 0 or absent: the nearest foot counts
     type(gap_shape_type) :: shape
     type(foot_type) :: foot
     real(wp) :: flat(3)
@@ -68,7 +70,8 @@ contains
       shape%normal = contact%normal
     case (profile_surface)
       flat = turn_back(contact%axes, x)
-      foot = contact%profile%foot(flat(:2))
+      foot = contact%profile%foot(flat(:2), stretch)
+      shape%past_slope = turn(contact%axes, [foot%past_slope, 0.0_wp])
       shape%normal = turn(contact%axes, [foot%normal, 0.0_wp])
       shape%tangent = turn(contact%axes, [foot%tangent, 0.0_wp])
       shape%turning = foot%turning
@@ -131,13 +134,14 @@ contains
   end function surface_change
 
   !> The derivative of a contact by a parameter that changes the motion of its links, or its own numbers.
-  pure function change_of_contact(contact, ball, surface, ball_change, change_of_surface, numbers) result(change)
+  pure function change_of_contact(contact, ball, surface, ball_change, change_of_surface, numbers, stretch) result(change)
     type(contact_type), intent(in) :: contact                 !< the contact
     type(link_motion_type), intent(in) :: ball                !< motion of the ball's link
     type(link_motion_type), intent(in) :: surface             !< motion of the surface's link
     type(link_change_type), intent(in) :: ball_change         !< derivative of the first one
     type(link_change_type), intent(in) :: change_of_surface   !< derivative of the second one
     real(wp), intent(in) :: numbers(:)                        !< (numbers) derivatives of the contact's numbers by one parameter, SI units; of size 0: all are zero
+    integer, intent(in), optional :: stretch                  !< of a profile, on which the foot is; 0 or absent: the nearest foot counts
     type(contact_change_type) :: change
     type(gap_shape_type) :: shape
     real(wp), dimension(3) :: arm, w, x, rate, moved, moved_rate, own, centre_rate
@@ -159,7 +163,7 @@ contains
       moved = turn_back(surface%r, change%centre - s%shift - cross(s%turn, arm)) - twist(4:6) - cross(twist(1:3), x)
       moved_rate = turn_back(surface%r, centre_rate - s%v - cross(s%omega, arm) - cross(surface%omega, change%centre - s%shift) &
                                         - cross(s%turn, w)) - cross(twist(1:3), rate)
-      shape = find_gap_shape(contact, x)
+      shape = find_gap_shape(contact, x, stretch)
       change%gap = dot_product(shape%normal, moved)
       change%gap_rate = dot_product(shape%normal, moved_rate) + dot_product(rate, matmul(shape%bending, moved))
       change%normal = turn(surface%r, matmul(shape%bending, moved) + cross(twist(1:3), shape%normal)) &

@@ -53,7 +53,7 @@ contains
       if (allocated(state%contact_force)) then
         if (.not. any(abs(state%contact_force(:, self%number)) > 0.0_wp)) return
       end if
-      place = self%contact%find_place(state%links(links(1)), state%links(links(2)))
+      place = self%contact%find_place(state%links(links(1)), state%links(links(2)), present_stretch(self, state))
       if (allocated(state%contact_force)) then
         force = state%contact_force(:, self%number)
       else
@@ -117,7 +117,7 @@ contains
     integer :: side
 
     associate (links => self%contact%links)
-      place = self%contact%find_place(state%links(links(1)), state%links(links(2)))
+      place = self%contact%find_place(state%links(links(1)), state%links(links(2)), present_stretch(self, state))
       if (.not. self%contact%is_rigid) then
         size_of_force = self%contact%normal_force(place)
       else if (allocated(state%contact_force)) then
@@ -126,7 +126,8 @@ contains
         size_of_force = 0.0_wp
       end if
       if (.not. abs(size_of_force) > 0.0_wp) return
-      varied = change_of_contact(self%contact, state%links(links(1)), state%links(links(2)), ball_change, surface_change, own)
+      varied = change_of_contact(self%contact, state%links(links(1)), state%links(links(2)), ball_change, surface_change, own, &
+                                 present_stretch(self, state))
       force = size_of_force*place%normal
       force_change = size_of_force*varied%normal &
                      + vary_normal_force(self%contact, place%gap, place%gap_rate(), varied, own)*place%normal
@@ -146,6 +147,15 @@ contains
       end do
     end associate
   end subroutine add_change
+
+  !> The stretch of its profile on which the contact stays; 0: the nearest foot counts.
+  pure integer function present_stretch(self, state) result(stretch)
+    type(contact_load_type), intent(in) :: self     !< the load
+    type(motion_view_type), intent(in) :: state     !< present motion of links and coordinates
+
+    stretch = 0
+    if (allocated(state%stretch)) stretch = state%stretch(self%number)
+  end function present_stretch
 
   !> Energy of a compliant contact without its damping [J].
   pure real(wp) function potential(self, state)

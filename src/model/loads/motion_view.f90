@@ -33,6 +33,8 @@ module mech9_motion_view
     logical, allocatable :: pressed(:, :)             !< (2,stops) ends of compliant stops that push; not allocated: it is not known
     real(wp), allocatable :: friction(:)              !< forces of frictions on their coordinates; not allocated: none is known [N m, N]
     real(wp), allocatable :: contact_force(:, :)      !< (3,contacts) forces on their balls, fixed axes; not allocated: not known [N]
+    integer, allocatable :: stretch(:)                !< (contacts) stretch of its profile on which a contact stays; 0: the nearest foot
+                                                      !< counts; not allocated: it does for all
     !> Keeps wrong numbers of links while loads are added. It is a pointer because loads may not change the motion.
     type(call_fault_type), pointer :: fault => null()
   contains

@@ -6,7 +6,7 @@ module mech9_directed_motion
   use mech9_model, only: model_type
   use mech9_request, only: output_settings_type
   use mech9_event_failures, only: failure_event_sensitivity
-  use mech9_integration_failures, only: failure_cornered_contact, failure_shared_contact, failure_angles_sensitivity
+  use mech9_integration_failures, only: failure_shared_contact, failure_angles_sensitivity
   use mech9_free_simulation, only: free_simulation_type
   use mech9_sensitivity_words, only: find_cause_at_event
   implicit none
@@ -87,10 +87,6 @@ contains
     else if (err%failure%kind == failure_angles_sensitivity) then
       call raise(err, exit_singular, time//'a ball joint comes near gimbal lock, and '//unknown//' are not known in other '// &
                  'angles; turn the axes of the joint by axis= and zero=')
-    else if (err%failure%kind == failure_cornered_contact) then
-      place = err%place
-      call raise(err, exit_data, time//'a contact stays closed on a path with corners, or at its end, where '//unknown// &
-                 ' are not known; give a path without corners on that side', place)
     else if (err%failure%kind == failure_shared_contact) then
       place = err%place
       call raise(err, exit_data, time//'equilibrium does not determine the forces of closed contacts with friction, where '// &

@@ -61,8 +61,17 @@ contains
         return
       end associate
     end do
-    call contacts%show_pressed(system%state, system%contact)
+    call show_ends(system, contacts)
   end subroutine begin_contacts
+
+  !> Show the system which compliant ends push, which contacts of links act, and the stretches of their profiles.
+  subroutine show_ends(system, contacts)
+    class(motion_system_type), intent(inout) :: system     !< the system; its state and its contacts get them
+    type(stop_contacts_type), intent(inout) :: contacts    !< all ends; get the stretches of contacts that act from now on
+
+    call contacts%show_pressed(system%state, system%contact)
+    call contacts%choose_stretches(system%model%mechanism, system%plan, system%state, system%contact)
+  end subroutine show_ends
 
   !> Meet all contacts at the present state of the system, whose independent rates change at impacts. A compliant end that is met or left is
   !> noted alone. Fails where drives move a coordinate beyond its stop.
@@ -96,7 +105,7 @@ contains
       if (.not. (contacts%ends(met)%is_stop() .or. contacts%ends(met)%is_rigid)) &
         system%contact%sticks(contacts%ends(met)%contact) = .false.
     end if
-    call contacts%show_pressed(system%state, system%contact)
+    call show_ends(system, contacts)
     touch = pack([(i, i=1, size(contacts%ends))], [(touches(system, contacts%ends(i), i == met), i=1, size(contacts%ends))])
     if (allocated(system%contact)) system%state%contact_force = 0.0_wp
     if (size(touch) == 0) then
@@ -131,7 +140,7 @@ contains
         if (.not. end%is_stop()) call take_friction(system, end, outcome%sticks(i), outcome%direction(:, i), events)
       end associate
     end do
-    call contacts%show_pressed(system%state, system%contact)
+    call show_ends(system, contacts)
     if (.not. allocated(system%contact)) return
     call rest_exactly(system, err)
     if (allocated(err)) return

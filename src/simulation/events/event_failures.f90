@@ -6,7 +6,8 @@ module mech9_event_failures
     failure_paradox, failure_shared_sticking, failure_undecided_friction, failure_contact_start, &
     failure_contact_violated, failure_undecided_contact, failure_contact_behind, last_event_failure
   public :: cause_grazing, cause_several_impacts, cause_start_on_stop, cause_no_motion, cause_drive_jumps, &
-    cause_breaks_loose, cause_held_hit, cause_contact_loose, cause_contact_rest, cause_rubbing_impact, cause_slip_at_rest
+    cause_breaks_loose, cause_held_hit, cause_contact_loose, cause_contact_rest, cause_rubbing_impact, cause_slip_at_rest, &
+    cause_corner_rest
 
   !> Drives move or press a coordinate beyond a rigid stop: number (of the stop), coordinates, values (the limit, the rate), name (unit
   !> of the limit), t.
@@ -18,10 +19,10 @@ module mech9_event_failures
   !> an acceleration; the rate of a drive jumps; a pair begins to slip whose coefficient at
   !> rest is above that of sliding; drives hit a contact that is closed; a contact begins to slide whose coefficient at rest is above that of
   !> sliding; one comes to rest without an acceleration; friction just stops the slip of one that is hit; one begins to
-  !> act without a slip, which parameters change.
+  !> act without a slip, which parameters change; the ball of a contact comes to rest where a part of its path ends.
   integer, parameter :: cause_grazing = 1, cause_several_impacts = 2, cause_start_on_stop = 3, cause_no_motion = 4, &
     cause_drive_jumps = 5, cause_breaks_loose = 6, cause_held_hit = 7, cause_contact_loose = 8, cause_contact_rest = 9, &
-    cause_rubbing_impact = 10, cause_slip_at_rest = 11
+    cause_rubbing_impact = 10, cause_slip_at_rest = 11, cause_corner_rest = 12
   !> The start lies behind a rigid stop: number (of the stop), coordinates, values (the coordinate, its limit), name (of their unit).
   integer, parameter :: failure_stop_start = 1403
   !> The equations of motion are singular where a stop is met: coordinates (without inertia), t.

@@ -13,7 +13,7 @@ module mech9_event_variation
   use mech9_error, only: error_type
   use mech9_event_failures, only: cause_grazing, cause_several_impacts, cause_start_on_stop, cause_no_motion, &
     cause_drive_jumps, cause_breaks_loose, cause_held_hit, cause_contact_loose, &
-    cause_contact_rest, cause_slip_at_rest
+    cause_contact_rest, cause_slip_at_rest, cause_corner_rest
   use mech9_event_tolerances, only: grazing, least_rebound
   use mech9_state, only: state_type, copy_state
   use mech9_tangent, only: tangent_type
@@ -49,6 +49,8 @@ module mech9_event_variation
     real(wp), allocatable :: gaps(:, :, :)    !< (P,0:2,contacts) derivatives of gaps, of their rates, and of slips in the direction in which
                                               !< contacts slide, at a fixed time before it [m, m/s]
     real(wp), allocatable :: slips(:, :, :)   !< (P,3,contacts) derivatives of slips at a fixed time before it, fixed axes [m/s]
+    real(wp), allocatable :: past(:, :)       !< (P,contacts) derivatives of ways past the end of a stretch of a profile [m]
+    real(wp), allocatable :: past_rate(:)     !< (contacts) rates of these ways [m/s]
     logical, allocatable :: rests(:)          !< (contacts) there is no slip before it
     logical, allocatable :: acted(:)          !< (contacts) there is a force before it
     real(wp), allocatable :: gap_motion(:, :) !< (0:2,contacts) the gaps, their rates and accelerations before it [m]
@@ -57,6 +59,7 @@ module mech9_event_variation
     procedure :: set_time
     procedure :: meet_stop
     procedure :: meet_friction
+    procedure :: meet_corner
     procedure :: pass_contacts
     procedure :: put_behind
     procedure :: hand_on
@@ -173,9 +176,10 @@ contains
     type(link_motion_type) :: ball, surface
     integer :: i
 
-    if (allocated(self%gaps)) deallocate (self%gaps, self%slips, self%rests, self%gap_motion)
+    if (allocated(self%gaps)) deallocate (self%gaps, self%slips, self%rests, self%gap_motion, self%past, self%past_rate)
     associate (n => size(system%model%mechanism%contacts), mechanism => system%model%mechanism)
-      allocate (self%gaps(size(self%time), 0:2, n), self%slips(size(self%time), 3, n), self%rests(n), self%gap_motion(0:2, n))
+      allocate (self%gaps(size(self%time), 0:2, n), self%slips(size(self%time), 3, n), self%rests(n), self%gap_motion(0:2, n), &
+                self%past(size(self%time), n), self%past_rate(n))
       self%acted = system%contact%acts
       do i = 1, n
         end = stop_contact_type(contact=i, is_rigid=mechanism%contacts(i)%is_rigid)
@@ -185,7 +189,9 @@ contains
         self%gaps(:, 0:1, i) = variation%gaps(:, 0:1)
         self%gaps(:, 2, i) = matmul(variation%slips(:, :, 0), system%contact%direction(:, i))
         self%slips(:, :, i) = variation%slips(:, :, 0)
+        self%past(:, i) = variation%past
         call place_of_contact(mechanism%contacts(i), system%plan, system%state, place, ball, surface)
+        self%past_rate(i) = place%past_rate
         self%rests(i) = norm2(place%slip - place%gap_rate()*place%normal) <= round_off_of_jumps*place%speed
       end do
     end associate
@@ -270,6 +276,22 @@ contains
       end if
     end associate
   end subroutine meet_rubbing
+
+  !> Take the time at which the ball of a contact comes to the end of a stretch of its profile. Fails where it comes to rest there.
+  subroutine meet_corner(self, system, end, err)
+    class(event_variation_type), intent(inout) :: self     !< the derivatives, at a fixed time
+    class(motion_system_type), intent(in) :: system        !< the system before the event
+    type(stop_contact_type), intent(in) :: end             !< the contact
+    type(error_type), allocatable, intent(out) :: err      !< allocated if there are no derivatives
+
+    associate (time => system%model%request%time, rate => self%past_rate(end%contact))
+      if (.not. abs(rate*(time%end - time%start)) > grazing*system%plan%length) then
+        call refuse_at(system, cause_corner_rest, end, err)
+      else
+        call self%set_time(-self%past(:, end%contact)/rate)
+      end if
+    end associate
+  end subroutine meet_corner
 
   !> Take the time at which a pair that sticks alone comes to its bound, above that of sliding: the part of the bound that it needs is 1
   !> there. Fails where this part does not change in time.

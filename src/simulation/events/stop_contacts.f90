@@ -29,6 +29,7 @@ module mech9_stop_contacts
                                          !< a closed rigid one without this is held by others
     integer :: contact = 0               !< place of the contact of links among all; 0: the end of a stop
     integer :: of_group = 0              !< number of its group &contact
+    integer :: stretch = 0               !< of its profile, on which a contact that acts stays; 0: the nearest foot counts
   contains
     procedure :: gap
     procedure :: is_stop
@@ -51,6 +52,9 @@ module mech9_stop_contacts
   contains
     procedure :: note
     procedure :: show_pressed
+    procedure :: choose_stretches
+    procedure :: show_stretches
+    procedure :: pass_end_of_stretch
     procedure :: any_held
     procedure :: held_coordinates
     procedure :: note_gaps
@@ -252,6 +256,62 @@ contains
       if (self%ends(i)%closed) state%pressed((3 - self%ends(i)%direction)/2, self%ends(i)%stop) = .not. self%ends(i)%is_rigid
     end do
   end subroutine show_pressed
+
+  !> Choose the stretches of their profiles on which contacts stay that act from now on, and show them a state. Only forces that follow from
+  !> accelerations jump where a stretch ends: those of rigid contacts and of friction.
+  pure subroutine choose_stretches(self, mechanism, plan, state, contact)
+    class(stop_contacts_type), intent(inout) :: self         !< the ends
+    type(mechanism_type), intent(in) :: mechanism            !< the mechanism
+    type(plan_type), intent(in) :: plan                      !< its plan
+    type(state_type), intent(inout) :: state                 !< gets the stretches
+    type(contact_motion_type), allocatable, intent(in) :: contact   !< contacts of links, which of them act; not allocated: there are none
+    type(gap_look_type) :: look
+    integer :: i
+
+    if (.not. allocated(contact)) return
+    do i = self%n_stops + 1, size(self%ends)
+      associate (end => self%ends(i), touched => mechanism%contacts(self%ends(i)%contact))
+        if (.not. allocated(touched%profile)) cycle
+        if (.not. (contact%acts(end%contact) .and. (touched%is_rigid .or. touched%has_friction()) .and. &
+                   touched%profile%is_divided())) then
+          end%stretch = 0
+        else if (end%stretch == 0) then
+          look = look_at_gap(mechanism, plan, state, end)
+          end%stretch = touched%profile%stretch_of(look%place%part)
+        end if
+      end associate
+    end do
+    call self%show_stretches(state)
+  end subroutine choose_stretches
+
+  !> Show a state the stretches on which contacts stay.
+  pure subroutine show_stretches(self, state)
+    class(stop_contacts_type), intent(in) :: self   !< the ends
+    type(state_type), intent(inout) :: state        !< gets the stretches
+
+    if (all(self%ends%stretch == 0)) then
+      if (allocated(state%stretch)) deallocate (state%stretch)
+    else
+      state%stretch = self%ends(self%n_stops + 1:)%stretch
+    end if
+  end subroutine show_stretches
+
+  !> Let a contact go on with the stretch that follows where the ball is past the end of the present one, and show a state.
+  pure subroutine pass_end_of_stretch(self, i, mechanism, plan, state)
+    class(stop_contacts_type), intent(inout) :: self         !< the ends
+    integer, intent(in) :: i                                 !< number of the end of this contact
+    type(mechanism_type), intent(in) :: mechanism            !< the mechanism
+    type(plan_type), intent(in) :: plan                      !< its plan
+    type(state_type), intent(inout) :: state                 !< gets the stretch
+    type(contact_place_type) :: place
+    type(link_motion_type) :: ball, surface
+
+    associate (end => self%ends(i), contact => mechanism%contacts(self%ends(i)%contact))
+      call place_of_contact(contact, plan, state, place, ball, surface)
+      end%stretch = contact%profile%next_stretch(end%stretch, contact%centre_in_plane(ball, surface))
+    end associate
+    call self%show_stretches(state)
+  end subroutine pass_end_of_stretch
 
   !> Whether any rigid end has a force of its own.
   pure logical function any_held(self)

@@ -27,8 +27,8 @@ module mech9_contact_motion
   implicit none
   private
   public :: contact_motion_type, contact_rows_type, begin_contact_motion, find_contact_motion, choose_contacts, &
-    find_contact_rows, find_acting_rows, press, constrain, show_forces, place_of_contact, acceleration_of_contact, &
-    correct_positions, correct_rates, note_slip
+    find_contact_rows, find_acting_rows, press, constrain, show_forces, place_of_contact, stretch_of_contact, &
+    acceleration_of_contact, correct_positions, correct_rates, note_slip
 
   !> The equations of some contacts in the coordinates that move.
   type :: contact_rows_type
@@ -107,8 +107,17 @@ contains
 
     call link_motion(plan, state, contact%links(1), ball%r, ball%p, ball%omega, ball%v)
     call link_motion(plan, state, contact%links(2), surface%r, surface%p, surface%omega, surface%v)
-    place = contact%find_place(ball, surface)
+    place = contact%find_place(ball, surface, stretch_of_contact(contact, state))
   end subroutine place_of_contact
+
+  !> The stretch of its profile on which a contact stays; 0: the nearest foot counts.
+  pure integer function stretch_of_contact(contact, state) result(stretch)
+    type(contact_type), intent(in) :: contact             !< the contact
+    type(state_type), intent(in) :: state                 !< the state
+
+    stretch = 0
+    if (allocated(state%stretch)) stretch = state%stretch(contact%slot)
+  end function stretch_of_contact
 
   !> The derivative of the slip of a contact in a state with the accelerations of its links, fixed axes [m/s^2].
   pure function acceleration_of_contact(contact, plan, state) result(acceleration)

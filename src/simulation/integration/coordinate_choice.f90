@@ -260,6 +260,7 @@ contains
     carried%state%t = state%t
     carried%state%dq = state%dq
     if (allocated(state%pressed)) carried%state%pressed = state%pressed
+    if (allocated(state%stretch)) carried%state%stretch = state%stretch
     if (allocated(state%friction)) then
       carried%state%friction = state%friction
       carried%state%heat = state%heat

@@ -3,8 +3,8 @@ module mech9_integration_failures
   implicit none
   private
   public :: failure_singular_step, failure_unclosed_step, failure_other_branch, failure_drive_jumps, &
-    failure_jump_sensitivity, failure_no_friction, failure_contact_paradox, failure_cornered_contact, &
-    failure_shared_contact, failure_angles_sensitivity, last_integration_failure
+    failure_jump_sensitivity, failure_no_friction, failure_contact_paradox, failure_shared_contact, &
+    failure_angles_sensitivity, last_integration_failure
 
   !> A position inside a step is too near to a singular one for the independent coordinates.
   integer, parameter :: failure_singular_step = 1301
@@ -21,12 +21,10 @@ module mech9_integration_failures
   !> Friction draws a contact together that slides, so that its force has no solution: number (of the contact), values (its coefficient, the
   !> least one at which this is so), t.
   integer, parameter :: failure_contact_paradox = 1307
-  !> Derivatives by parameters are not known where a contact is closed on a path with corners, or at its end: number (of the contact), t.
-  integer, parameter :: failure_cornered_contact = 1308
   !> Derivatives by parameters are not known where equilibrium does not determine the forces of closed contacts, with friction or where
   !> forces are wanted: number (of the first of these contacts), t.
-  integer, parameter :: failure_shared_contact = 1309
+  integer, parameter :: failure_shared_contact = 1308
   !> Other angles are integrated in place of those of the data file, whose derivatives are not known: t.
-  integer, parameter :: failure_angles_sensitivity = 1310
+  integer, parameter :: failure_angles_sensitivity = 1309
   integer, parameter :: last_integration_failure = failure_angles_sensitivity
 end module mech9_integration_failures

@@ -22,6 +22,7 @@ module mech9_smooth_interval
     integer :: contact = 0        !< number of the end of a stop that is met or left at the end; 0: none is
     integer :: friction = 0       !< number of the friction whose pair comes to rest or begins to slip at the end; 0: none does
     integer :: rubbing = 0        !< number of the contact of links that comes to rest or begins to slide at the end; 0: none does
+    integer :: corner = 0         !< number of the end of a contact whose ball comes to the end of a stretch of its profile; 0: none does
   contains
     procedure :: begin
     procedure :: time_inside
@@ -107,14 +108,16 @@ contains
     is_before_end = 0.5_wp*(from_inside(t, direction) - t)*direction <= (self%ahead - t)*direction
   end function is_before_end
 
-  !> End the interval where a motor passes its limit, a contact is met or left, or friction of a pair or of a contact changes.
-  pure subroutine end_at_event(self, t, motor, contact, friction, rubbing)
+  !> End the interval where a motor passes its limit, a contact is met or left, friction of a pair or of a contact changes, or a ball comes
+  !> to the end of a stretch of its profile.
+  pure subroutine end_at_event(self, t, motor, contact, friction, rubbing, corner)
     class(smooth_interval_type), intent(inout) :: self   !< the interval
     real(wp), intent(in) :: t                            !< time of the event, ahead [s]
     integer, intent(in) :: motor                         !< number of the motor; 0: none
     integer, intent(in) :: contact                       !< number of the end; 0: none
     integer, intent(in) :: friction                      !< number of the friction; 0: none
     integer, intent(in) :: rubbing                       !< number of the contact of links with friction; 0: none
+    integer, intent(in) :: corner                        !< number of the end of the contact with the profile; 0: none
 
     self%ends = .true.
     self%ahead = t
@@ -122,13 +125,15 @@ contains
     self%contact = contact
     self%friction = friction
     self%rubbing = rubbing
+    self%corner = corner
   end subroutine end_at_event
 
   !> Whether an event ends the interval, and not a joint of the laws alone.
   pure logical function ends_at_event(self)
     class(smooth_interval_type), intent(in) :: self   !< the interval
 
-    ends_at_event = self%motor > 0 .or. self%contact > 0 .or. self%friction > 0 .or. self%rubbing > 0
+    ends_at_event = self%motor > 0 .or. self%contact > 0 .or. self%friction > 0 .or. self%rubbing > 0 .or. &
+                    self%corner > 0
   end function ends_at_event
 
   !> Whether a joint of the laws lies at a time.
@@ -149,5 +154,6 @@ contains
     self%contact = 0
     self%friction = 0
     self%rubbing = 0
+    self%corner = 0
   end subroutine forget_event
 end module mech9_smooth_interval

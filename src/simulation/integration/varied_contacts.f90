@@ -10,7 +10,7 @@
 module mech9_varied_contacts
   use mech9_kinds, only: wp
   use mech9_error, only: error_type, raise, exit_data
-  use mech9_integration_failures, only: failure_cornered_contact, failure_shared_contact
+  use mech9_integration_failures, only: failure_shared_contact
   use mech9_integration_tolerances, only: slip_of_errors
   use mech9_rotation, only: cross, turn, turn_back
   use mech9_friction_cones, only: solve_least
@@ -29,7 +29,8 @@ module mech9_varied_contacts
   use mech9_lagrange_types, only: dynamics_plan_type, lagrange_work_type
   use mech9_varied_motion, only: varied_motion_type, link_twists
   use mech9_motion_sensitivity, only: motion_sensitivity_type
-  use mech9_contact_motion, only: contact_motion_type, contact_rows_type, choose_contacts, find_contact_rows, place_of_contact
+  use mech9_contact_motion, only: contact_motion_type, contact_rows_type, choose_contacts, find_contact_rows, place_of_contact, &
+    stretch_of_contact
   implicit none
   private
   public :: contact_variation_type, vary_contact, varied_numbers, find_varied_contacts
@@ -40,6 +41,7 @@ module mech9_varied_contacts
     real(wp), allocatable :: slips(:, :, :)   !< (P,3,0:1) of the slip and its derivative in time as seen from the surface, fixed axes [m/s]
     real(wp), allocatable :: turns(:, :)      !< (P,3) rotation of the surface, fixed axes [rad]
     real(wp), allocatable :: sliding(:)       !< (P) of the coefficient of sliding friction
+    real(wp), allocatable :: past(:)          !< (P) of the way past the end of the stretch of its profile on which it stays [m]
     real(wp), allocatable :: normal_force(:)  !< (P) of the normal force of a compliant contact [N]
   end type contact_variation_type
 
@@ -95,10 +97,10 @@ contains
 
     associate (contact => model%mechanism%contacts(number), n => motion%n_parameters)
       allocate (variation%gaps(n, 0:2), variation%slips(n, 3, 0:1), variation%turns(n, 3), variation%sliding(n), &
-                variation%normal_force(n), source=0.0_wp)
+                variation%normal_force(n), variation%past(n), source=0.0_wp)
       call find_relative(contact, motion%plan, motion%state, relative)
       call place_of_contact(contact, motion%plan, motion%state, place, seen_ball, seen_surface)
-      shape = find_gap_shape(contact, relative%x(:, 0))
+      shape = find_gap_shape(contact, relative%x(:, 0), stretch_of_contact(contact, motion%state))
       call link_twists(motion, contact%links(1), ball)
       call link_twists(motion, contact%links(2), surface)
       do p = 1, n
@@ -107,6 +109,7 @@ contains
         call find_moved(contact, motion%plan, relative, ball(p, :, :) - surface(p, :, :), numbers, moved)
         associate (x => relative%x, bent => matmul(shape%bending, moved(:, 0)), gaps => variation%gaps)
           gaps(p, 0) = dot_product(shape%normal, moved(:, 0))
+          variation%past(p) = dot_product(shape%past_slope, moved(:, 0))
           gaps(p, 1) = dot_product(shape%normal, moved(:, 1)) + dot_product(x(:, 1), bent)
           gaps(p, 2) = dot_product(shape%normal, moved(:, 2)) + 2.0_wp*dot_product(x(:, 1), matmul(shape%bending, moved(:, 1))) &
                        + dot_product(x(:, 2), bent) + shape%bent(x(:, 1), moved(:, 0))
@@ -232,8 +235,7 @@ contains
   end subroutine find_moved
 
   !> Find the derivatives of the forces of rigid contacts that are closed, and of friction, after those of the accelerations with these held; these
-  !> accelerations get what the forces add. Fails at a corner of a path, where accelerations jump, and where equilibrium does not determine
-  !> forces that matter.
+  !> accelerations get what the forces add. Fails where equilibrium does not determine forces that matter.
   subroutine find_varied_contacts(model, plan, dynamics, state, work, contact, sensitivity, err)
     type(model_type), intent(in) :: model                         !< the model
     type(plan_type), intent(in) :: plan                           !< its plan
@@ -265,8 +267,6 @@ contains
       if (allocated(err)) return
       allocate (variations(n), known(3, n), directions(2, n), lines(3, 3*n), of_contact(3*n), along(3*n))
       do k = 1, n
-        call check_path(contacts(acting(k)), equations%places(k)%part, state%t, err)
-        if (allocated(err)) return
         call vary_contact(model, motion, acting(k), variations(k))
       end do
       do k = 1, n
@@ -387,18 +387,6 @@ contains
       change(2:3) = change(2:3) - contact%sliding_friction*normal_force*turning*aside
     end associate
   end function turned_friction
-
-  !> Fail where a closed contact may pass a corner or an end of its path: accelerations jump there.
-  subroutine check_path(contact, part, t, err)
-    type(contact_type), intent(in) :: contact           !< the contact
-    integer, intent(in) :: part                         !< of its profile on which the ball is; negative: a corner or an end
-    real(wp), intent(in) :: t                           !< time [s]
-    type(error_type), allocatable, intent(out) :: err   !< allocated if it may
-
-    if (.not. allocated(contact%profile)) return
-    if (size(contact%profile%pieces) == 1 .and. part > 0) return
-    call refuse(contact, failure_cornered_contact, t, err)
-  end subroutine check_path
 
   !> Fail because of a closed contact. No shorter step helps: the failure is none after which the integrator tries again.
   subroutine refuse(contact, kind, t, err)
