@@ -46,7 +46,11 @@ contains
              '. Leave out the friction, the parameters, or sensitivities and gradients'
     case (failure_event_sensitivity)
       call find_cause_at_event(failure, cause)
-      text = 'derivatives by the parameters do not exist at t = '//to_text(failure%t, 10)//' s: '//cause// &
+      text = 'derivatives by the parameters do not exist at t = '
+      ! these exist
+      if (any(failure%limit == [cause_contact_loose, cause_breaks_loose])) &
+        text = 'derivatives by the parameters are not computed at t = '
+      text = text//to_text(failure%t, 10)//' s: '//cause// &
              '. End the run before, or leave out sensitivities and gradients'
     case (failure_angles_sensitivity)
       text = 'derivatives by the parameters are not computed at t = '//to_text(failure%t, 10)//' s, where the motion goes on '// &
