@@ -28,7 +28,11 @@ contains
     if (allocated(present%pressed)) state%pressed = present%pressed
     if (allocated(present%friction)) state%friction = present%friction
     if (allocated(present%contact_force)) state%contact_force = present%contact_force
-    if (allocated(present%stretch)) state%stretch = present%stretch
+    if (allocated(present%stretch)) then
+      state%stretch = present%stretch
+    else if (allocated(state%stretch)) then
+      deallocate (state%stretch)
+    end if
     call place_all(plan, state, err)
     if (allocated(err)) return
     call spread_all_velocities(plan, state)

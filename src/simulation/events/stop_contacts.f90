@@ -245,8 +245,11 @@ contains
     integer :: i
 
     do i = 1, size(self%ends)
-      if (self%ends(i)%contact > 0) contact%acts(self%ends(i)%contact) = &
-        merge(self%ends(i)%held, self%ends(i)%closed, self%ends(i)%is_rigid)
+      if (self%ends(i)%contact == 0) cycle
+      associate (k => self%ends(i)%contact)
+        contact%acts(k) = merge(self%ends(i)%held, self%ends(i)%closed, self%ends(i)%is_rigid)
+        if (.not. contact%acts(k)) contact%forces(:, k) = 0.0_wp
+      end associate
     end do
     if (count(.not. self%ends%is_rigid .and. self%ends%contact == 0) == 0) return
     if (.not. allocated(state%pressed)) allocate (state%pressed(2, maxval(self%ends%stop)))
