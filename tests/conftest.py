@@ -8,6 +8,7 @@ import re
 import resource
 import sys
 
+import numpy as np
 import pytest
 
 from browser import Browser, PageError, browser_path
@@ -24,6 +25,9 @@ def pytest_addoption(parser):
 
 
 def pytest_configure(config):
+    # data files of tests have numbers as Python writes them; numpy 2 writes np.float64(0.1)
+    if int(np.__version__.split('.')[0]) > 1:
+        np.set_printoptions(legacy='1.25')
     resource.setrlimit(resource.RLIMIT_CPU, (MOST_SECONDS, resource.getrlimit(resource.RLIMIT_CPU)[1]))
 
 
