@@ -176,7 +176,7 @@ contains
     subroutine follow_side(self, places, direction)
       class(followed_positions_type), intent(inout) :: self   !< the positions
       integer, intent(in) :: places(:)                        !< of the positions among all, in the order of the path
-      real(wp), intent(in) :: direction                       !< 1 upwards, -1 downwards
+      real(wp), intent(in) :: direction                       !< 1 upwards, -1 downwards [1]
 
       if (allocated(err)) return
       if (size(places) >= worth_lanes) call follow_stretches(self, places, direction)
@@ -188,7 +188,7 @@ contains
     subroutine follow_stretches(self, places, direction)
       class(followed_positions_type), intent(inout), target :: self   !< the positions
       integer, intent(in) :: places(:)                                !< of the positions among all, in the order of the path
-      real(wp), intent(in) :: direction                               !< 1 upwards, -1 downwards
+      real(wp), intent(in) :: direction                               !< 1 upwards, -1 downwards [1]
       type(error_type), allocatable :: failure
       type(driven_simulation_type), pointer :: driven
       real(wp) :: x(size(places)), ways(size(self%driven)), goals(lanes)
@@ -258,7 +258,7 @@ contains
     subroutine take_lanes(self, places, direction)
       class(followed_positions_type), intent(inout) :: self   !< the positions
       integer, intent(in) :: places(:)                        !< (lanes) of the positions among all
-      real(wp), intent(in) :: direction                       !< of a single independent coordinate: 1 upwards, -1 downwards
+      real(wp), intent(in) :: direction                       !< of a single independent coordinate: 1 upwards, -1 downwards [1]
       real(wp) :: speeds(lanes, size(self%driven)), more(lanes, size(self%driven))
       integer :: i, k, l
 
@@ -291,7 +291,7 @@ contains
     subroutine follow_path(self, places, direction)
       class(followed_positions_type), intent(inout) :: self   !< the positions
       integer, intent(in) :: places(:)                        !< of the positions among all, in the order of the path
-      real(wp), intent(in) :: direction                       !< 1 upwards, -1 downwards
+      real(wp), intent(in) :: direction                       !< 1 upwards, -1 downwards [1]
       type(error_type), allocatable :: failure
       integer :: k
 
@@ -345,7 +345,7 @@ contains
       class(followed_positions_type), intent(inout) :: self           !< the positions
       integer, intent(in) :: place                                    !< of the position among all
       type(error_type), allocatable, intent(inout) :: failure         !< the failure of this position, or of one before it
-      real(wp), intent(in), optional :: direction                     !< of a single independent coordinate: 1 upwards, -1 downwards
+      real(wp), intent(in), optional :: direction                     !< of a single independent coordinate: 1 upwards, -1 downwards [1]
       type(plan_type), pointer :: plan
       type(state_type), pointer :: state
       type(state_type), allocatable :: moving
@@ -383,7 +383,7 @@ contains
     subroutine take_speed(self, place, direction, plan, state)
       class(followed_positions_type), intent(inout) :: self           !< the positions
       integer, intent(in) :: place                                    !< of the position among all
-      real(wp), intent(in) :: direction                               !< 1 upwards, -1 downwards
+      real(wp), intent(in) :: direction                               !< 1 upwards, -1 downwards [1]
       type(plan_type), intent(in) :: plan                             !< the plan of the position
       type(state_type), intent(in) :: state                           !< the position
       real(wp) :: speed, acceleration

@@ -243,7 +243,7 @@ contains
     type(tester_type), intent(inout) :: tester   !< counts the checks
     character(len=*), intent(in) :: text         !< of the data file
     real(wp), intent(in) :: low                  !< least value of the independent coordinate [unit of the file]
-    real(wp), intent(in) :: high                 !< largest one
+    real(wp), intent(in) :: high                 !< largest one [unit of the file]
     integer, intent(in) :: n                     !< number of positions
     character(len=*), intent(in) :: why          !< name of the mechanism
     integer, intent(in) :: at_least              !< so many of the positions are found side by side

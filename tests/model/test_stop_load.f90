@@ -48,9 +48,9 @@ contains
 
     !> The energy where one number is another one.
     real(wp) function energy(at, i, distance)
-      real(wp), intent(in) :: at(6)      !< coordinate, both ends, stiffness, damping, exponent
+      real(wp), intent(in) :: at(6)      !< coordinate, both ends [m], stiffness [N/m], damping, exponent [1]
       integer, intent(in) :: i           !< the number that is another one
-      real(wp), intent(in) :: distance   !< by so much
+      real(wp), intent(in) :: distance   !< by so much [m]
       real(wp) :: beside(6)
 
       beside = at
@@ -61,7 +61,7 @@ contains
 
     !> Set the coordinate and the stop.
     subroutine set(at)
-      real(wp), intent(in) :: at(6)      !< coordinate, both ends, stiffness, damping, exponent
+      real(wp), intent(in) :: at(6)      !< coordinate, both ends [m], stiffness [N/m], damping, exponent [1]
 
       view%q = at(1:1)
       load%stop%coordinate = 1

@@ -245,8 +245,8 @@ contains
 
     !> The slope of the straight line through points by least squares.
     pure real(wp) function slope_of(x, y) result(slope)
-      real(wp), intent(in) :: x(:)   !< abscissas
-      real(wp), intent(in) :: y(:)   !< values
+      real(wp), intent(in) :: x(:)   !< (n) abscissas [1]
+      real(wp), intent(in) :: y(:)   !< (n) values [1]
 
       associate (distances => x - sum(x)/size(x))
         slope = dot_product(distances, y)/dot_product(distances, distances)

@@ -316,7 +316,7 @@ contains
 
   !> Assignments of numbers to the array of constants, some in a line.
   subroutine write_values(values, lines)
-    real(wp), intent(in) :: values(:)           !< the constants, SI units
+    real(wp), intent(in) :: values(:)           !< (constants) SI units [m, rad, kg, s and their products]
     type(lines_type), intent(inout) :: lines    !< get the assignments
     integer, parameter :: longest = 80
     character(len=132) :: line

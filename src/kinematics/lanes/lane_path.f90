@@ -62,7 +62,7 @@ contains
     class(lane_path_type), intent(inout) :: self   !< the lanes
     type(plan_type), intent(in) :: plan            !< plan of the mechanism, or of its requested part
     real(wp), intent(in) :: q(:)                   !< (M) the position [rad, m]
-    real(wp), intent(in) :: largest_pivots(:)      !< (blocks) largest least pivot on the way to it
+    real(wp), intent(in) :: largest_pivots(:)      !< (blocks) largest least pivot on the way to it [1]
     integer, intent(in) :: lane                    !< number of the lane
 
     self%goes_on(lane) = plan%n_coordinates == size(self%group%steps) .and. size(plan%blocks) == size(self%group%blocks)
@@ -77,7 +77,7 @@ contains
     integer, intent(in) :: lane                    !< number of the lane
     real(wp), intent(in) :: from(:)                !< (D) independent coordinates at x = 0 [rad, m]
     real(wp), intent(in) :: way(:)                 !< (D) their change per unit of x [rad, m]
-    real(wp), intent(in) :: x                      !< length of the way to its position
+    real(wp), intent(in) :: x                      !< length of the way to its position [rad, m]
     integer :: i
 
     self%from(lane, :) = from
@@ -102,7 +102,7 @@ contains
   !> Go to the next positions: of all lanes that go on, each to its own one. Lanes that could not get there no longer go on.
   pure subroutine go_to(self, x)
     class(lane_path_type), intent(inout) :: self   !< the lanes, started
-    real(wp), intent(in) :: x(:)                   !< (lanes) lengths of the ways to them
+    real(wp), intent(in) :: x(:)                   !< (lanes) lengths of the ways to them [rad, m]
     real(wp) :: ways(lanes), from(lanes), to(lanes), h(lanes)
     logical :: refused(lanes)
     integer :: i, l, parts
@@ -170,7 +170,7 @@ contains
   !> Set the independent coordinates, which move along their lines with constant rates.
   pure subroutine drive(self, x)
     class(lane_path_type), intent(inout) :: self   !< the lanes
-    real(wp), intent(in) :: x(lanes)               !< places on the lines
+    real(wp), intent(in) :: x(lanes)               !< (lanes) places on the lines [rad, m]
     integer :: i
 
     do i = 1, size(self%steps)
@@ -200,8 +200,8 @@ contains
   !> Find rates and accelerations at the present positions, for given ones of the independent coordinates.
   pure subroutine renew_rates(self, rates, accelerations)
     class(lane_path_type), intent(inout) :: self   !< the lanes
-    real(wp), intent(in) :: rates(:, :)            !< (lanes,D) of the independent coordinates
-    real(wp), intent(in) :: accelerations(:, :)    !< (lanes,D) of them
+    real(wp), intent(in) :: rates(:, :)            !< (lanes,D) of the independent coordinates [rad/s, m/s]
+    real(wp), intent(in) :: accelerations(:, :)    !< (lanes,D) of them [rad/s^2, m/s^2]
     integer :: i
 
     do i = 1, size(self%steps)
@@ -217,7 +217,7 @@ contains
     integer, intent(in) :: order                 !< 0: coordinates; 1: rates; 2: accelerations
     real(wp), intent(in) :: units(:)             !< (M) their units in the results [rad, m, rad/s, m/s]
     integer, intent(in) :: places(:)             !< (lanes) numbers of the positions that lanes have reached
-    real(wp), intent(inout) :: numbers(:, :)     !< (M,n) of all positions; those of these get them
+    real(wp), intent(inout) :: numbers(:, :)     !< (M,n) of all positions; those of these get them [rad, m, per s]
     real(wp) :: taken(lanes)
     integer :: k, l, s
 

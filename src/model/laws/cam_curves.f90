@@ -43,7 +43,7 @@ contains
   !> The parts of the time between its ends at which the fourth derivative of a law jumps.
   pure subroutine find_inner_joints(number, parts, n)
     integer, intent(in) :: number                        !< of the law in curve_names
-    real(wp), intent(out) :: parts(most_inner_joints)    !< the first n of them, in their order
+    real(wp), intent(out) :: parts(most_inner_joints)    !< the first n of them, in their order, in parts of the duration [1]
     integer, intent(out) :: n                            !< how many there are
 
     parts = [0.125_wp, 0.375_wp, 0.625_wp, 0.875_wp]

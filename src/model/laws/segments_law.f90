@@ -219,7 +219,7 @@ contains
   pure subroutine find_parts(self, i, parts, n)
     class(segments_law_type), intent(in) :: self           !< the law
     integer, intent(in) :: i                               !< number of the time
-    real(wp), intent(out) :: parts(0:most_inner_joints)    !< 0 for this time itself, then n others
+    real(wp), intent(out) :: parts(0:most_inner_joints)    !< 0 for this time itself, then n others, in parts of the duration [1]
     integer, intent(out) :: n                              !< how many joints there are within the segment
 
     parts = 0.0_wp
@@ -231,7 +231,7 @@ contains
   pure real(wp) function time_of(self, i, part)
     class(segments_law_type), intent(in) :: self   !< the law
     integer, intent(in) :: i                       !< number of the time
-    real(wp), intent(in) :: part                   !< of the segment's duration; 0 at its beginning
+    real(wp), intent(in) :: part                   !< of the segment's duration; 0 at its beginning [1]
 
     time_of = self%times(i)
     if (part > 0.0_wp) time_of = time_of + part*(self%times(i + 1) - self%times(i))

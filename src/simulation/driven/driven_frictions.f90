@@ -51,7 +51,7 @@ contains
     type(mechanism_type), intent(in) :: mechanism         !< the mechanism
     type(plan_type), intent(in) :: plan                   !< its plan, with all blocks
     type(state_type), intent(inout) :: state              !< the state; gets the frictions
-    real(wp), intent(in) :: directions(:)                 !< (frictions) in which pairs slide; 0: at rest, or smooth
+    real(wp), intent(in) :: directions(:)                 !< (frictions) in which pairs slide: -1, 1; 0: at rest, or smooth [1]
     type(error_type), allocatable, intent(out) :: err     !< allocated if it failed
     type(friction_modes_type) :: modes
     integer :: i

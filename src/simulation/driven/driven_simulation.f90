@@ -354,7 +354,7 @@ contains
   !> Find the frictions at the present time.
   subroutine find_frictions(self, directions, err)
     class(driven_simulation_type), intent(inout) :: self   !< the simulation
-    real(wp), intent(in) :: directions(:)                  !< (frictions) in which pairs slide; 0: at rest, or smooth
+    real(wp), intent(in) :: directions(:)                  !< (frictions) in which pairs slide: -1, 1; 0: at rest, or smooth [1]
     type(error_type), allocatable, intent(out) :: err      !< allocated if it failed
 
     if (self%angles%in_use() .and. .not. self%angles%give_same_wrenches()) then

@@ -38,7 +38,7 @@ contains
     class(driven_turns_type), intent(inout) :: self   !< the turns
     type(mechanism_type), intent(in) :: mechanism     !< the mechanism
     real(wp), intent(in) :: t                         !< time of the start [s]
-    real(wp), intent(in) :: behind(:)                 !< (frictions) directions of all pairs behind it; 0: they rest, or are smooth
+    real(wp), intent(in) :: behind(:)                 !< (frictions) directions of all pairs behind it [1]; 0: they rest, or are smooth
 
     self%may_come = .not. all(mechanism%frictions%is_smooth)
     if (allocated(self%sides)) deallocate (self%sides)
@@ -87,7 +87,7 @@ contains
   pure subroutine note_end(self, t, behind)
     class(driven_turns_type), intent(inout) :: self   !< the turns up to the start of the stride
     real(wp), intent(in) :: t                         !< time of its end [s]
-    real(wp), intent(in), optional :: behind(:)       !< (frictions) directions of all pairs behind it; 0: they rest, or are smooth. Given
+    real(wp), intent(in), optional :: behind(:)       !< (frictions) directions of all pairs behind it [1]; 0: they rest, or are smooth. Given
                                                       !< unless the motion ends there
 
     self%end = t
@@ -101,7 +101,7 @@ contains
   pure function directions_on(self, side, slipping, at_end) result(directions)
     class(driven_turns_type), intent(in) :: self      !< the turns
     integer, intent(in) :: side                       !< 1: within the stride; 2: behind it
-    real(wp), intent(in) :: slipping(:)               !< (frictions) directions of the rates; 0: at rest, or smooth
+    real(wp), intent(in) :: slipping(:)               !< (frictions) directions of the rates [1]; 0: at rest, or smooth
     logical, intent(in) :: at_end                     !< rates there may have the sign of the other side
     real(wp) :: directions(size(slipping))
 
@@ -117,7 +117,7 @@ contains
     type(drive_slot_type), intent(in) :: drives(:)     !< the drives
     type(driven_motion_type), intent(in) :: driven     !< the motion, at this position
     real(wp), intent(in) :: time                       !< the time before or behind; that of the position: there is none [s]
-    real(wp), intent(out) :: directions(:)             !< (frictions) -1, 1; 0: at rest, or smooth
+    real(wp), intent(out) :: directions(:)             !< (frictions) -1, 1; 0: at rest, or smooth [1]
     type(driven_motion_type) :: other
     type(error_type), allocatable :: failure
 
@@ -133,8 +133,8 @@ contains
   !> Directions that count in a single position: of a pair at rest, that in which it begins to move; at the end of the motion, that in which
   !> it came. A pair that turns back has none.
   pure function directions_at_rest(before, behind, is_last) result(directions)
-    real(wp), intent(in) :: before(:)   !< (frictions) directions of all pairs before; 0: they rest, or are smooth
-    real(wp), intent(in) :: behind(:)   !< (frictions) behind
+    real(wp), intent(in) :: before(:)   !< (frictions) directions of all pairs before [1]; 0: they rest, or are smooth
+    real(wp), intent(in) :: behind(:)   !< (frictions) directions behind [1]
     logical, intent(in) :: is_last      !< the motion ends there
     real(wp) :: directions(size(before))
 
@@ -146,7 +146,7 @@ contains
   !> Whether any pair rests whose friction jumps.
   pure logical function any_rests(mechanism, directions)
     type(mechanism_type), intent(in) :: mechanism   !< the mechanism
-    real(wp), intent(in) :: directions(:)           !< (frictions) of its pairs
+    real(wp), intent(in) :: directions(:)           !< (frictions) directions of its pairs [1]
 
     any_rests = any(.not. (abs(directions) > 0.0_wp .or. mechanism%frictions%is_smooth))
   end function any_rests
