@@ -184,3 +184,12 @@ def test_pendulum_over_corners(checks, mech9d, tmp_path, case, least):
     # derivatives grow to some hundreds: shorter steps
     report = against_differences(checks, mech9d, tmp_path, text, ['q1', 'q3', 'dq2'], 1.2, 3, step=1e-6, tol=2e-6)
     checks.true(len(kinds(report)) >= least, 'the disc meets the polygon', kinds(report))
+
+
+def test_rest_at_a_corner(checks, mech9d, tmp_path):
+    """A ball that creeps onto a corner has no derivatives behind it: the time of the event changes as the inverse of its rate."""
+    (tmp_path / ROOF).write_text('-1 0\n0 0\n\n1 -1\n', encoding='utf-8')
+    numbers = {**numbers_of(0.0), 'vx': 5e-8, 'vy': 0.0, 'x': -1e-8, 'y': 0.1, 'r': 0.1}
+    _, _, told = go(mech9d, tmp_path, data_file(numbers, ['g']) + '&output sensitivities=.true. /\n' + TIGHT, end=1.0, code=6)
+    checks.true('derivatives by the parameters do not exist at t = 0.2' in told and
+                ' s: the ball of contact 1 comes to rest at a corner or an end of its path. End the run before' in told, told)
